@@ -1,0 +1,144 @@
+//! `kiln.ron`: which texture belongs on which object, in which unit, and how it was made.
+
+use super::StableId;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// The manifest's file name inside a baked folder.
+pub const MANIFEST_FILE: &str = "kiln.ron";
+
+/// The version that this library writes, and the newest that it reads.
+pub const MANIFEST_VERSION: u32 = 1;
+
+/// Everything that a game must know to put a bake on its entities.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of this format.
+    pub version: u32,
+    /// What wrote it: the package and its version.
+    pub generator: String,
+    /// The scene as it was asked for: a path, or the game's own word.
+    pub scene: String,
+    /// Unit of a texel; always `E/pi [cd/m^2]`.
+    pub texel_unit: String,
+    /// The textures.
+    pub pages: Vec<Page>,
+    /// Which part of which page each object shows.
+    pub placements: Vec<Placement>,
+    /// Lights whose direct light is in the texels and must not be added again.
+    pub baked_lights: Vec<BakedLight>,
+}
+
+/// One lightmap texture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Page {
+    /// File name inside the folder.
+    pub file: String,
+    /// Width [texels].
+    pub width: u32,
+    /// Height [texels].
+    pub height: u32,
+}
+
+/// Where an object's unit square of UV1 lies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Placement {
+    /// The object.
+    pub id: StableId,
+    /// Index into [`Manifest::pages`].
+    pub page: u32,
+    /// Smallest corner in the page's own unit square; v grows downwards.
+    pub uv_min: [f32; 2],
+    /// Largest corner.
+    pub uv_max: [f32; 2],
+}
+
+/// A light that the texels already hold.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BakedLight {
+    /// The light.
+    pub id: StableId,
+}
+
+/// Why a manifest cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ManifestError {
+    /// It is no manifest.
+    #[error("{MANIFEST_FILE} cannot be read ({reason}); bake the scene again")]
+    Syntax {
+        /// What the parser said.
+        reason: String,
+    },
+    /// It is of a later version.
+    #[error(
+        "{MANIFEST_FILE} is of version {found}, this bevy_kiln reads up to {MANIFEST_VERSION}; update bevy_kiln or bake again"
+    )]
+    TooNew {
+        /// Its version.
+        found: u32,
+    },
+    /// A placement names a page that is not listed.
+    #[error("{MANIFEST_FILE} puts \"{id}\" on page {page}, which is not there; bake the scene again")]
+    MissingPage {
+        /// The object.
+        id: StableId,
+        /// The page asked for.
+        page: u32,
+    },
+}
+
+impl Manifest {
+    /// Reads and checks a manifest.
+    pub fn from_ron(text: &str) -> Result<Self, ManifestError> {
+        let manifest: Self =
+            ron::from_str(text).map_err(|error| ManifestError::Syntax { reason: error.to_string() })?;
+        if manifest.version > MANIFEST_VERSION {
+            return Err(ManifestError::TooNew { found: manifest.version });
+        }
+        for placement in &manifest.placements {
+            if placement.page as usize >= manifest.pages.len() {
+                return Err(ManifestError::MissingPage { id: placement.id.clone(), page: placement.page });
+            }
+        }
+        Ok(manifest)
+    }
+
+    /// The manifest as text, readable and stable so that it shows small differences under version control.
+    pub fn to_ron(&self) -> String {
+        let style = ron::ser::PrettyConfig::new().new_line("\n").depth_limit(3);
+        ron::ser::to_string_pretty(self, style).expect("plain data serialises")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn manifest() -> Manifest {
+        Manifest {
+            version: MANIFEST_VERSION,
+            generator: "bevy_kiln 0".into(),
+            scene: "a.glb".into(),
+            texel_unit: "E/pi [cd/m^2]".into(),
+            pages: vec![Page { file: "lightmap_0.ktx2".into(), width: 4, height: 8 }],
+            placements: vec![Placement { id: StableId::new("a/b"), page: 0, uv_min: [0.25, 0.0], uv_max: [0.5, 1.0] }],
+            baked_lights: vec![BakedLight { id: StableId::new("lamp") }],
+        }
+    }
+
+    #[test]
+    fn round_trip() {
+        assert_eq!(Manifest::from_ron(&manifest().to_ron()), Ok(manifest()));
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_refused_with_the_reason() {
+        let newer = Manifest { version: MANIFEST_VERSION + 1, ..manifest() };
+        assert_eq!(Manifest::from_ron(&newer.to_ron()), Err(ManifestError::TooNew { found: MANIFEST_VERSION + 1 }));
+        let mut missing = manifest();
+        missing.placements[0].page = 1;
+        assert!(matches!(Manifest::from_ron(&missing.to_ron()), Err(ManifestError::MissingPage { page: 1, .. })));
+        assert!(matches!(Manifest::from_ron("(version: 1"), Err(ManifestError::Syntax { .. })));
+    }
+}

@@ -1,0 +1,80 @@
+//! Why a bake did not happen, and what it left out, sorted by who must act.
+
+use crate::scene::{Fault, Subject};
+use thiserror::Error;
+
+/// Why there is no result.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum BakeError {
+    /// The scene: nothing in it gives light.
+    #[error("the scene has no light: add an emissive material or a RectLight, or give it a sky (--sky R,G,B)")]
+    NoLight,
+    /// The scene: nothing in it can be baked.
+    #[error("nothing in the scene can receive a lightmap: {reason}")]
+    NothingToBake {
+        /// Why not.
+        reason: String,
+    },
+    /// The settings.
+    #[error("{setting}: {reason}")]
+    Settings {
+        /// The setting at fault, by its name on the command line.
+        setting: &'static str,
+        /// What is wrong with it and what to do.
+        reason: String,
+    },
+    /// The settings: an object needs more texels than a texture can have.
+    #[error("\"{name}\" needs {width} × {height} texels but a page has at most {limit} × {limit}; lower the density")]
+    AtlasOverflow {
+        /// The object.
+        name: String,
+        /// Width needed [texels].
+        width: u64,
+        /// Height needed [texels].
+        height: u64,
+        /// Largest page [texels].
+        limit: u32,
+    },
+    /// The machine.
+    #[error("cannot start the baking threads: {reason}")]
+    Threads {
+        /// What the system said.
+        reason: String,
+    },
+    /// A person stopped it.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+/// What a bake left out or changed, by name.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum BakeWarning {
+    /// A fault of the scene; what is at fault was left out.
+    #[error("{0}; left out")]
+    LeftOut(Fault),
+    /// A fault of the scene that costs an object only its lightmap.
+    #[error("{0}")]
+    NoLightmap(Fault),
+    /// Parts of a UV1 lie over each other, so that they share texels.
+    #[error(
+        "{subject} has overlapping UV1 in {texels} texels, which mix the light of different places; lay it out again"
+    )]
+    OverlappingUv1 {
+        /// The object, or the first of those that share a map.
+        subject: Subject,
+        /// How many texels.
+        texels: u64,
+    },
+    /// Texel values beyond what a texture format can hold.
+    #[error("{texels} texels are brighter than {format} can hold ({limit} cd/m²) and were clamped")]
+    Clamped {
+        /// How many texels.
+        texels: u64,
+        /// The format.
+        format: &'static str,
+        /// The largest value that it holds [cd/m²].
+        limit: f32,
+    },
+}

@@ -1,0 +1,37 @@
+//! What a bake did, in numbers.
+
+use super::BakeWarning;
+
+/// What a bake did, in numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BakeReport {
+    /// Covered texels (or points, or pixels).
+    pub texels: u64,
+    /// Paths that started from them.
+    pub samples: u64,
+    /// Rays traced, shadow rays included.
+    pub rays: u64,
+    /// Processor time of the baking threads [s].
+    pub cpu_seconds: f64,
+    /// Time that passed [s].
+    pub wall_seconds: f64,
+    /// Standard error over value, by luminance.
+    pub relative_stderr: RelativeError,
+    /// Absorbed over emitted flux; `None` for a scene from which light escapes or whose sky shines.
+    pub energy_balance: Option<f64>,
+    /// Texels whose value a texture format could not hold.
+    pub clamped: u64,
+    /// What was left out, and what to do about it.
+    pub warnings: Vec<BakeWarning>,
+}
+
+/// Standard error over value, by Rec. 709 luminance, over covered texels brighter than 1e-3 of the mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RelativeError {
+    /// Mean.
+    pub mean: f64,
+    /// 95th percentile.
+    pub p95: f64,
+    /// Worst.
+    pub max: f64,
+}

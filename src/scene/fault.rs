@@ -1,0 +1,136 @@
+//! What can be wrong with a scene, and with which part of it.
+
+use thiserror::Error;
+
+/// The part of a scene that a [`Fault`] is about, by the name that its author gave it.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Subject {
+    /// A shape.
+    Mesh(String),
+    /// A placed mesh.
+    Instance(String),
+    /// A surface description.
+    Material(String),
+    /// A light source.
+    Light(String),
+    /// The sky.
+    Sky,
+}
+
+impl std::fmt::Display for Subject {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Mesh(name) => write!(f, "mesh \"{name}\""),
+            Self::Instance(name) => write!(f, "instance \"{name}\""),
+            Self::Material(name) => write!(f, "material \"{name}\""),
+            Self::Light(name) => write!(f, "light \"{name}\""),
+            Self::Sky => write!(f, "the sky"),
+        }
+    }
+}
+
+/// One thing that is wrong with a scene.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{subject} {kind}")]
+pub struct Fault {
+    /// What is at fault.
+    pub subject: Subject,
+    /// What is wrong with it.
+    pub kind: FaultKind,
+}
+
+/// What is wrong with a [`Subject`]. Reads as the rest of a sentence that begins with its name.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FaultKind {
+    /// A vertex position is NaN or infinite.
+    #[error("has a position that is not a finite number (vertex {vertex}); repair the mesh and export it again")]
+    NonFinitePosition {
+        /// The first such vertex.
+        vertex: usize,
+    },
+    /// An index points past the last vertex.
+    #[error("has index {index} but only {vertex_count} vertices; export the mesh again")]
+    IndexOutOfRange {
+        /// The first such index.
+        index: u32,
+        /// How many vertices there are.
+        vertex_count: usize,
+    },
+    /// The number of indices (or of vertices, without indices) is no whole number of triangles.
+    #[error("ends in the middle of a triangle ({count} corners); export the mesh again")]
+    IncompleteTriangle {
+        /// How many corners there are.
+        count: usize,
+    },
+    /// There is no triangle with an area in it.
+    #[error("has no triangle with an area")]
+    NoTriangles,
+    /// A vertex attribute has another length than the positions.
+    #[error("has {count} {attribute} for {vertex_count} vertices; export the mesh again")]
+    AttributeLength {
+        /// Which attribute.
+        attribute: &'static str,
+        /// How many values it has.
+        count: usize,
+        /// How many vertices there are.
+        vertex_count: usize,
+    },
+    /// It asks for a lightmap and has no UV1.
+    #[error("has no UV1 (TEXCOORD_1), so it blocks and reflects light but gets no lightmap; add a second UV set")]
+    MissingUv1,
+    /// A UV1 coordinate is outside the unit square or not finite.
+    #[error(
+        "has a UV1 (TEXCOORD_1) outside the unit square (vertex {vertex}), so it gets no lightmap; lay it out again"
+    )]
+    Uv1OutsideUnitSquare {
+        /// The first such vertex.
+        vertex: usize,
+    },
+    /// The UV1 has no area, so no texel lies on the mesh.
+    #[error("has a UV1 (TEXCOORD_1) without area, so it gets no lightmap; lay it out again")]
+    Uv1WithoutArea,
+    /// A lightmap density that is not positive and finite.
+    #[error("asks for a lightmap of {density} texels per metre; ask for a positive number")]
+    Density {
+        /// What was asked for [1/m].
+        density: f32,
+    },
+    /// A transform that is not finite or that flattens space.
+    #[error("has a transform that cannot be inverted; give it a scale other than zero on every axis")]
+    SingularTransform,
+    /// It refers to a mesh that is not there.
+    #[error("refers to mesh number {index}, which is not there")]
+    MissingMesh {
+        /// The index asked for.
+        index: usize,
+    },
+    /// It refers to a material that is not there.
+    #[error("refers to material number {index}, which is not there")]
+    MissingMaterial {
+        /// The index asked for.
+        index: usize,
+    },
+    /// Two instances share an id, so their texels could not be told apart.
+    #[error("has the same id as another instance; give each its own name")]
+    DuplicateId,
+    /// A colour outside [0, 1], or not finite.
+    #[error("has a base colour outside 0 to 1 and would make light out of nothing; correct the colour")]
+    ColourOutOfRange,
+    /// An emission that is negative or not finite.
+    #[error("has an emission that is negative or not a finite number; correct it")]
+    BadEmission,
+    /// A light source without area.
+    #[error("has no area, so it gives no light; give it a width and a height")]
+    ZeroArea,
+}
+
+impl FaultKind {
+    /// Whether the subject can still block and reflect light: it then loses its lightmap only.
+    pub fn costs_only_the_lightmap(&self) -> bool {
+        matches!(
+            self,
+            Self::MissingUv1 | Self::Uv1OutsideUnitSquare { .. } | Self::Uv1WithoutArea | Self::Density { .. }
+        )
+    }
+}

@@ -1,0 +1,41 @@
+//! What exists: a scene as plain data, in physical terms.
+//!
+//! A [`Scene`] is a snapshot. It owns its meshes, materials and lights, knows nothing of rays or of Bevy, and may
+//! be built by hand, from a file or from a running game. [`Scene::validate`] names every fault in it; what is at
+//! fault is left out of a bake with a warning, never silently.
+//!
+//! Lengths are metres, Y is up, colours are linear Rec. 709.
+
+mod camera;
+mod fault;
+mod id;
+mod light;
+mod material;
+mod mesh;
+mod validate;
+
+pub use camera::Camera;
+pub use fault::{Fault, FaultKind, Subject};
+pub use id::unique_ids;
+pub use light::{Light, RectLight};
+pub use material::Material;
+pub use mesh::{Indices, Instance, LightmapRequest, Mesh, Topology};
+
+use glam::Vec3;
+
+/// Everything that light meets, and everything that gives light.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Shapes in their own frames, shared by instances.
+    pub meshes: Vec<Mesh>,
+    /// Surface descriptions, shared by instances.
+    pub materials: Vec<Material>,
+    /// Placed meshes.
+    pub instances: Vec<Instance>,
+    /// Light sources that are no meshes.
+    pub lights: Vec<Light>,
+    /// Radiance of a sky that is the same in every direction [cd/m²]. Black is no sky.
+    pub sky_radiance: Vec3,
+    /// Views into the scene, for pictures.
+    pub cameras: Vec<Camera>,
+}
