@@ -136,3 +136,133 @@ fn decompress(mut compressed: &[u8]) -> Option<Vec<u8>> {
     StreamingDecoder::new(&mut compressed).ok()?.read_to_end(&mut bytes).ok()?;
     Some(bytes)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::rgb9e5;
+    use super::super::test_pages::{page, strange_page};
+    use super::*;
+    use glam::Vec3;
+    use ktx2::Reader;
+    use ktx2::{ColorModel, ColorPrimaries, TransferFunction};
+
+    /// What a loader makes of the file: its header and the texels of its level, decompressed.
+    fn load(file: &[u8]) -> (Header, Vec<u8>) {
+        let reader = Reader::new(file).expect("a KTX2 file");
+        let levels: Vec<_> = reader.levels().collect();
+        assert_eq!(levels.len(), 1);
+        let texels = match reader.header().supercompression_scheme {
+            None => levels[0].data.to_vec(),
+            Some(SupercompressionScheme::Zstandard) => decompress(levels[0].data).expect("a Zstandard frame"),
+            Some(other) => panic!("{other:?} is not what Bevy reads"),
+        };
+        assert_eq!(levels[0].uncompressed_byte_length, texels.len() as u64);
+        (reader.header(), texels)
+    }
+
+    /// Values that a coder of differences cannot predict, from a fixed seed.
+    fn noise(length: usize) -> Vec<u8> {
+        let mut state = 1_u64;
+        let mut byte = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 56) as u8
+        };
+        (0..length).map(|_| byte()).collect()
+    }
+
+    #[test]
+    fn the_header_is_that_of_a_two_dimensional_texture() {
+        for format in [TexelFormat::Rgb9e5, TexelFormat::Rgba16f] {
+            let (header, texels) = load(&ktx2_bytes(&page(24, 20), format).bytes);
+            let (expected, type_size) = match format {
+                TexelFormat::Rgb9e5 => (Format::E5B9G9R9_UFLOAT_PACK32, 4),
+                TexelFormat::Rgba16f => (Format::R16G16B16A16_SFLOAT, 2),
+            };
+            assert_eq!((header.format, header.type_size), (Some(expected), type_size));
+            assert_eq!((header.pixel_width, header.pixel_height, header.pixel_depth), (24, 20, 0));
+            assert_eq!((header.layer_count, header.face_count, header.level_count), (0, 1, 1));
+            assert_eq!(header.supercompression_scheme, Some(SupercompressionScheme::Zstandard));
+            assert_eq!(texels, texel_bytes(&page(24, 20), format).bytes);
+        }
+    }
+
+    #[test]
+    fn descriptor_and_metadata_say_linear_rec_709_and_row_0_first() {
+        let file = ktx2_bytes(&page(8, 8), TexelFormat::Rgb9e5).bytes;
+        let reader = Reader::new(&file[..]).unwrap();
+        let basic = reader.basic_dfd().expect("a basic descriptor");
+        assert_eq!(basic.color_model, Some(ColorModel::RGBSDA));
+        assert_eq!(basic.color_primaries, Some(ColorPrimaries::BT709));
+        assert_eq!(basic.transfer_function, Some(TransferFunction::Linear));
+        assert_eq!(basic.sample_information.len(), 6, "mantissa and exponent of each channel");
+        let metadata: Vec<_> = reader.key_value_data().collect();
+        let writer = format!("{WRITER}\0");
+        assert_eq!(metadata, [("KTXorientation", &b"rd\0"[..]), ("KTXwriter", writer.as_bytes())]);
+        assert!(reader.header().index.kvd_byte_offset.is_multiple_of(4));
+    }
+
+    #[test]
+    fn shared_exponents_are_close_to_the_page() {
+        let page = page(16, 9);
+        let (_, texels) = load(&ktx2_bytes(&page, TexelFormat::Rgb9e5).bytes);
+        assert_eq!(texels.len(), page.radiance.len() * 4);
+        for (bytes, radiance) in texels.chunks_exact(4).zip(&page.radiance) {
+            let colour = Vec3::from(rgb9e5::decode(u32::from_le_bytes(bytes.try_into().unwrap())));
+            assert!((colour - radiance).abs().max_element() <= radiance.max_element() / 511.0);
+        }
+    }
+
+    #[test]
+    fn noise_is_stored_as_it_is_and_aligned() {
+        let texels = noise(64 * 64 * 8);
+        let file = container(64, 64, TexelFormat::Rgba16f, &texels);
+        let (header, stored) = load(&file);
+        assert_eq!(header.supercompression_scheme, None);
+        assert_eq!(stored, texels);
+        assert_eq!((file.len() - texels.len()) % 8, 0);
+    }
+
+    #[test]
+    fn compression_gives_every_kind_of_level_back() {
+        let noise = noise(300_000);
+        for length in [8, 16, 100, 1000, 131_071, 131_072, 131_073, 262_144, 300_000] {
+            let noisy = &noise[..length];
+            let kinds: [Vec<u8>; 5] = [
+                vec![0; length],
+                noisy.iter().map(|byte| byte & 1).collect(),
+                noisy.iter().map(|byte| byte & 0x3f).collect(),
+                (0..length).map(|index| if index % 4 == 3 { 0x3c } else { noisy[index] }).collect(),
+                (0..length).map(|index| (index / 700) as u8).collect(),
+            ];
+            for (kind, bytes) in kinds.iter().enumerate() {
+                match compress(bytes) {
+                    Some(compressed) => assert_eq!(decompress(&compressed).as_ref(), Some(bytes)),
+                    None => assert!(length <= 100, "kind {kind} of {length} bytes was not compressed"),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_page_one_texel_high_stays_two_dimensional() {
+        for width in [1, 3] {
+            let page = page(width, 1);
+            let (header, texels) = load(&ktx2_bytes(&page, TexelFormat::Rgba16f).bytes);
+            assert_eq!((header.pixel_width, header.pixel_height), (width, 2));
+            let row = texel_bytes(&page, TexelFormat::Rgba16f).bytes;
+            assert_eq!(texels, [&row[..], &row[..]].concat());
+        }
+        let empty = Page { width: 0, height: 0, radiance: vec![], coverage: vec![], raw: vec![], stderr: vec![] };
+        let (header, texels) = load(&ktx2_bytes(&empty, TexelFormat::Rgb9e5).bytes);
+        assert_eq!((header.pixel_width, header.pixel_height, texels), (1, 2, vec![0; 8]));
+    }
+
+    #[test]
+    fn what_does_not_fit_is_counted_in_the_file_as_in_the_texels() {
+        for format in [TexelFormat::Rgb9e5, TexelFormat::Rgba16f] {
+            let encoded = ktx2_bytes(&strange_page(), format);
+            assert_eq!(encoded.clamped, texel_bytes(&strange_page(), format).clamped);
+            assert_eq!(load(&encoded.bytes).1, texel_bytes(&strange_page(), format).bytes);
+        }
+    }
+}

@@ -108,3 +108,109 @@ fn check(lightmap: &Lightmap, dir: &Path) -> Result<(), OutputError> {
         None => Ok(()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_pages::{lightmap, page, strange_page};
+    use super::*;
+    use crate::artefact::StableId;
+    use std::fs;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_folder_holds_maps_previews_and_manifest() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = folder.path().join("baked/room");
+        let lightmap = lightmap(vec![page(8, 4), page(4, 16)]);
+        let written = write_lightmap(&lightmap, "room.glb", &dir, OutputFormat::Rgba16f).unwrap();
+        let expected =
+            ["lightmap_0.ktx2", "lightmap_0.png", "lightmap_1.ktx2", "lightmap_1.png", "kiln.ron"].map(|n| dir.join(n));
+        assert_eq!(written, WrittenLightmap { files: expected.to_vec(), warnings: vec![], clamped: 0 });
+        assert_eq!(names(&dir).len(), 5);
+
+        let manifest = Manifest::from_ron(&fs::read_to_string(dir.join(MANIFEST_FILE)).unwrap()).unwrap();
+        assert_eq!(manifest.scene, "room.glb");
+        assert_eq!(manifest.texel_unit, "E/pi [cd/m^2]");
+        assert!(manifest.generator.starts_with("bevy_kiln 0."), "{}", manifest.generator);
+        assert_eq!(manifest.pages[1], artefact::Page { file: "lightmap_1.ktx2".into(), width: 4, height: 16 });
+        assert_eq!(manifest.baked_lights, [BakedLight { id: StableId::new("lamp") }]);
+        let placement =
+            artefact::Placement { id: StableId::new("room/part 1"), page: 1, uv_min: [0.0, 0.25], uv_max: [0.5, 1.0] };
+        assert_eq!(manifest.placements[1], placement);
+        let map = fs::read(dir.join(&manifest.pages[1].file)).unwrap();
+        assert_eq!(map, ktx2::ktx2_bytes(&lightmap.pages[1], TexelFormat::Rgba16f).bytes);
+    }
+
+    #[test]
+    fn exr_comes_besides_the_usual_maps() {
+        let (folder, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let lightmap = lightmap(vec![page(8, 4)]);
+        write_lightmap(&lightmap, "a", folder.path(), OutputFormat::Exr).unwrap();
+        write_lightmap(&lightmap, "a", other.path(), OutputFormat::Rgb9e5).unwrap();
+        assert_eq!(names(folder.path()), ["kiln.ron", "lightmap_0.exr", "lightmap_0.ktx2", "lightmap_0.png"]);
+        for name in names(other.path()) {
+            assert_eq!(fs::read(folder.path().join(&name)).unwrap(), fs::read(other.path().join(&name)).unwrap());
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_reported() {
+        let folder = tempfile::tempdir().unwrap();
+        let lightmap = lightmap(vec![page(4, 4), strange_page()]);
+        let write = |format| write_lightmap(&lightmap, "a", folder.path(), format).unwrap();
+        let shared = BakeWarning::Clamped { texels: 4, format: "rgb9e5", limit: 65408.0 };
+        let half = BakeWarning::Clamped { texels: 5, format: "rgba16f", limit: 65504.0 };
+        let exr = BakeWarning::Clamped { texels: 4, format: "exr", limit: f32::MAX };
+        assert_eq!(
+            (write(OutputFormat::Rgb9e5).warnings, write(OutputFormat::Rgb9e5).clamped),
+            (vec![shared.clone()], 4)
+        );
+        assert_eq!((write(OutputFormat::Rgba16f).warnings, write(OutputFormat::Rgba16f).clamped), (vec![half], 5));
+        assert_eq!(write(OutputFormat::Exr).warnings, [shared, exr]);
+    }
+
+    #[test]
+    fn a_write_that_fails_leaves_the_old_bake_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = folder.path();
+        write_lightmap(&lightmap(vec![page(8, 4)]), "old", dir, OutputFormat::Rgb9e5).unwrap();
+        let old: Vec<_> = names(dir).into_iter().map(|name| (fs::read(dir.join(&name)).unwrap(), name)).collect();
+
+        let short = Page { height: 5, ..page(8, 4) };
+        let mut nowhere = lightmap(vec![page(4, 4)]);
+        nowhere.placements[0].page = 1;
+        for (malformed, named) in [
+            (lightmap(vec![page(4, 4), short]), "lightmap_1.ktx2"),
+            (lightmap(vec![Page { width: 0, ..page(4, 4) }]), "lightmap_0.ktx2"),
+            (nowhere, MANIFEST_FILE),
+        ] {
+            let error = write_lightmap(&malformed, "new", dir, OutputFormat::Exr).unwrap_err();
+            assert!(matches!(&error, OutputError::Malformed { path, .. } if *path == dir.join(named)), "{error}");
+        }
+        // Two pages, of which the second cannot take its place: the manifest, which names the first, stays.
+        fs::create_dir(dir.join("lightmap_1.ktx2")).unwrap();
+        let error = write_lightmap(&lightmap(vec![page(8, 4); 2]), "new", dir, OutputFormat::Rgb9e5).unwrap_err();
+        assert!(matches!(&error, OutputError::Replace { path, .. } if *path == dir.join("lightmap_1.ktx2")), "{error}");
+        fs::remove_dir(dir.join("lightmap_1.ktx2")).unwrap();
+        let now: Vec<_> = names(dir).into_iter().map(|name| (fs::read(dir.join(&name)).unwrap(), name)).collect();
+        assert_eq!(now, old);
+    }
+
+    #[test]
+    fn a_file_in_the_place_of_the_folder_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = folder.path().join("baked");
+        fs::write(&dir, "kept").unwrap();
+        let result = write_lightmap(&lightmap(vec![page(4, 4)]), "a", &dir, OutputFormat::Rgb9e5);
+        assert_eq!(result, Err(OutputError::FolderIsFile { path: dir.clone() }));
+        assert_eq!(fs::read_to_string(&dir).unwrap(), "kept");
+    }
+}

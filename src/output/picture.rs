@@ -53,3 +53,44 @@ fn check(picture: &Picture, path: &Path) -> Result<(), OutputError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bake::BakeReport;
+    use glam::Vec3;
+    use std::fs;
+
+    fn picture() -> Picture {
+        let (radiance, stderr) = (vec![Vec3::ONE; 6], vec![Vec3::ZERO; 6]);
+        Picture { width: 3, height: 2, radiance, stderr, report: BakeReport::default() }
+    }
+
+    #[test]
+    fn the_name_says_the_format() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, start) in [("deep/er/a.png", &b"\x89PNG"[..]), ("b.EXR", &[0x76, 0x2f, 0x31, 0x01])] {
+            let path = folder.path().join(name);
+            write_picture(&picture(), &path, 0.0).unwrap();
+            assert!(fs::read(&path).unwrap().starts_with(start), "{name}");
+        }
+        for name in ["a.jpg", "png", "a."] {
+            let path = folder.path().join(name);
+            assert_eq!(write_picture(&picture(), &path, 0.0), Err(OutputError::UnknownPicture { path }));
+        }
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2, "nothing else was left");
+    }
+
+    #[test]
+    fn what_makes_no_picture_is_refused_by_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let error = write_picture(&picture(), &path, f32::INFINITY).unwrap_err();
+        assert_eq!(error, OutputError::Exposure { path: path.clone(), ev100: f32::INFINITY });
+        let short = Picture { height: 3, ..picture() };
+        assert!(matches!(write_picture(&short, &path, 0.0), Err(OutputError::Malformed { .. })));
+        let empty = Picture { width: 0, radiance: vec![], stderr: vec![], ..picture() };
+        assert!(matches!(write_picture(&empty, &path, 0.0), Err(OutputError::Malformed { .. })));
+        assert!(!path.exists());
+    }
+}
