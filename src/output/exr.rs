@@ -12,7 +12,8 @@ use exr::prelude::{
 use glam::Vec3;
 use std::io::{self, Seek, Write};
 
-/// Every layer of a page: `R,G,B` after repair, `A` coverage, `raw` and `stderr`; row 0 at v = 0 [cd/m²].
+/// Every layer of a page, which must be as long as the page has texels: `R,G,B` after repair, `A` coverage, `raw` and
+/// `stderr`; row 0 at v = 0 [cd/m²].
 pub(super) fn write_page(page: &Page, to: impl Write + Seek) -> io::Result<()> {
     let width = page.width as usize;
     let channels = SpecificChannels::build()

@@ -195,9 +195,9 @@ mod tests {
             let error = write_lightmap(&malformed, "new", dir, OutputFormat::Exr).unwrap_err();
             assert!(matches!(&error, OutputError::Malformed { path, .. } if *path == dir.join(named)), "{error}");
         }
-        // Two pages, of which the second cannot take its place: the manifest, which names the first, stays.
+        // Two other pages, of which the second has no place.
         fs::create_dir(dir.join("lightmap_1.ktx2")).unwrap();
-        let error = write_lightmap(&lightmap(vec![page(8, 4); 2]), "new", dir, OutputFormat::Rgb9e5).unwrap_err();
+        let error = write_lightmap(&lightmap(vec![page(4, 8); 2]), "new", dir, OutputFormat::Rgb9e5).unwrap_err();
         assert!(matches!(&error, OutputError::Replace { path, .. } if *path == dir.join("lightmap_1.ktx2")), "{error}");
         fs::remove_dir(dir.join("lightmap_1.ktx2")).unwrap();
         let now: Vec<_> = names(dir).into_iter().map(|name| (fs::read(dir.join(&name)).unwrap(), name)).collect();

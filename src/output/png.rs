@@ -14,7 +14,7 @@ const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 /// The share of covered texels that a preview shows unclipped.
 const PREVIEW_SHARE: f64 = 0.99;
 
-/// A page, exposed so that 99 % of its covered texels are not clipped; what no triangle covers is black.
+/// A page, exposed by itself so that 99 % of its covered texels are not clipped; what no triangle covers is black.
 pub(super) fn write_preview(page: &Page, to: impl Write) -> io::Result<()> {
     let exposure = preview_exposure(page);
     let pixels = page.radiance.iter().zip(&page.coverage).flat_map(|(&radiance, &coverage)| {

@@ -26,6 +26,10 @@ impl Staged {
         place: &Path,
         write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<Self, OutputError> {
+        if place.is_dir() {
+            let reason = "it is a folder".to_owned();
+            return Err(OutputError::Replace { path: place.to_owned(), reason });
+        }
         let failed = |error: io::Error| OutputError::Write { path: place.to_owned(), reason: error.to_string() };
         let (beside, file) = create_beside(place).map_err(failed)?;
         let staged = Self { beside: Some(beside), place: place.to_owned() };
@@ -142,7 +146,13 @@ mod tests {
         assert!(matches!(write_text(&place, "new"), Err(OutputError::Replace { path, .. }) if path == place));
         assert_eq!(names(folder.path()), ["a.txt"]);
         assert_eq!(names(&place), ["inside"]);
-        assert!(matches!(write_text(Path::new("/"), "new"), Err(OutputError::Write { .. })));
+        // The same where the place is taken only after the file was staged.
+        let later = folder.path().join("b.txt");
+        let staged = Staged::write(&later, |file| file.write_all(b"new")).unwrap();
+        fs::create_dir(&later).unwrap();
+        assert!(matches!(staged.place(), Err(OutputError::Replace { path, .. }) if path == later));
+        assert_eq!(names(folder.path()), ["a.txt", "b.txt"]);
+        assert!(matches!(write_text(Path::new(""), "new"), Err(OutputError::Write { .. })));
     }
 
     #[test]
