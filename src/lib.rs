@@ -5,6 +5,8 @@ pub mod math;
 #[cfg(feature = "bake")]
 pub mod bake;
 #[cfg(feature = "bake")]
+pub mod output;
+#[cfg(feature = "bake")]
 pub mod scene;
 #[cfg(feature = "bake")]
 pub mod trace;
