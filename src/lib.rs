@@ -3,6 +3,7 @@
 pub mod artefact;
 #[cfg(feature = "bake")]
 pub mod bake;
+pub mod math;
 #[cfg(feature = "bake")]
 pub mod scene;
 #[cfg(feature = "bake")]

@@ -1,0 +1,1 @@
+//! Spherical rectangles and triangles from easy and hard points of view.
