@@ -6,8 +6,13 @@
 //! the corners enter as products of complex numbers, one inverse tangent gives the solid angle (Van Oosterom and
 //! Strackee 1983), and cos(φ) is followed by its distance from where the strip would reach infinity. So it holds
 //! far away and near the plane of the rectangle, and a sample costs one sine and cosine.
+//!
+//! Measured against 60 digits over 3000 rectangles of aspect 1 to 1000, seen from 10⁻⁴ to 10⁴ lengths and from
+//! elevations down to 10⁻⁹: the solid angle is right to 3·10⁻⁷ of itself and the share of it on either side of a
+//! sample to 3·10⁻⁷, the worst at 10⁻⁹ from the surface; else to 10⁻⁹.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
+use std::f64::consts::TAU;
 
 /// The smallest solid angle [sr] that is sampled. Below it, sample the area: nothing is gained any more.
 const SMALLEST_SOLID_ANGLE: f64 = 1e-14;
@@ -62,7 +67,7 @@ impl SphericalRectangle {
             Extent { x0, x1: x0 + edge_u.dot(axis_u), y0, y1: y0 + edge_v.dot(axis_v), distance: height.abs() };
         let solid_angle = extent.solid_angle();
         // Written so that a NaN is refused too.
-        if !(solid_angle >= SMALLEST_SOLID_ANGLE && solid_angle.is_finite()) {
+        if !(SMALLEST_SOLID_ANGLE..TAU).contains(&solid_angle) {
             return None;
         }
         let mirrored = extent.x0.abs() < extent.x1.abs();
