@@ -132,7 +132,7 @@ fn quadrature_of_smooth_and_of_cut_off_functions() {
     let disk = |s: [f64; 2]| f64::from(u8::from(s[0] * s[0] + s[1] * s[1] < 1.0));
     let cells = (0..256).map(|i| [f64::from(i % 16) / 16.0, f64::from(i / 16) / 16.0]);
     let area: f64 = cells.map(|low| integrate(&disk, low, [1.0 / 16.0; 2], 1e-7)).sum();
-    assert!((area - PI / 4.0).abs() < 2e-5, "{area}");
+    assert!((area - PI / 4.0).abs() < 1e-4, "{area}");
 }
 
 #[test]
