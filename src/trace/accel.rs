@@ -5,7 +5,7 @@
 //! whose triangle it hits. Triangles lie in world space: a static bake needs no instance transforms, and a second
 //! rounding on the way down would break watertightness between neighbours.
 
-use super::triangle::{Crossing, ShearedRay};
+use super::triangle::{Crossing, ShearedRay, plane_distance};
 use glam::Vec3;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -45,9 +45,9 @@ impl Accel {
     /// Builds a tree. All vertices must be finite.
     pub(super) fn new(triangles: &[[Vec3; 3]]) -> Self {
         let reach = triangles.iter().flatten().fold(0.0_f32, |reach, vertex| reach.max(vertex.abs().max_element()));
-        // The slab test's distances carry a relative error of a few units in the last place, that is, of the
-        // distance between origin and box, which `2·reach` bounds. Four such units: with two, rays aimed at
-        // vertices of a sphere at ten times its radius from the origin slip by; more only cost speed.
+        // The tree's slab test is off by a few units in the last place of the distance between origin and box, and
+        // takes direction components below ε as ε, so that a ray in the plane of a flat box leaves it after
+        // padding/ε. Four units make that 4·reach, farther than two points of the scene can be apart (2√3·reach).
         let padding = 4.0 * f32::EPSILON * reach;
         let boxes: Vec<Padded> = triangles
             .iter()
@@ -71,15 +71,21 @@ impl Accel {
     pub(super) fn closest(&self, origin: Vec3, direction: Vec3, t_max: f32) -> Option<Hit> {
         let tree = self.tree.as_ref()?;
         let sheared = ShearedRay::new(origin, direction);
-        let ray = Ray::new(origin.to_array().into(), direction.to_array().into(), 0.0, t_max);
+        let start = End { position: origin, inwards: direction };
+        let ray = tree_ray(origin, direction, t_max);
         let mut nearest = RayHit::none();
         let mut winner: Option<Crossing> = None;
-        tree.ray_traverse(ray, &mut nearest, |ray, index| match sheared.cross(&self.triangles[index].0) {
-            Some(crossing) if crossing.t > crossing.t_error && crossing.t < ray.tmax => {
-                winner = Some(crossing);
-                crossing.t
+        tree.ray_traverse(ray, &mut nearest, |ray, index| {
+            let triangle = &self.triangles[index].0;
+            match sheared.cross(triangle) {
+                Some(crossing)
+                    if crossing.t < ray.tmax && start.is_behind(crossing.t, crossing.t_error, triangle) =>
+                {
+                    winner = Some(crossing);
+                    crossing.t
+                }
+                _ => f32::INFINITY,
             }
-            _ => f32::INFINITY,
         });
         winner.map(|crossing| Hit {
             triangle: self.triangles[nearest.primitive_id as usize].1,
@@ -100,11 +106,49 @@ impl Accel {
         }
         let direction = offset / distance;
         let sheared = ShearedRay::new(origin, direction);
-        let ray = Ray::new(origin.to_array().into(), direction.to_array().into(), 0.0, distance);
-        let end = distance * (1.0 - 4.0 * f32::EPSILON);
-        !tree.ray_traverse_miss(ray, |_, index| match sheared.cross(&self.triangles[index].0) {
-            Some(crossing) if crossing.t > crossing.t_error && crossing.t + crossing.t_error < end => crossing.t,
-            _ => f32::INFINITY,
+        let ray = tree_ray(origin, direction, distance);
+        let start = End { position: origin, inwards: direction };
+        let end = End { position: target, inwards: -direction };
+        !tree.ray_traverse_miss(ray, |_, index| {
+            let triangle = &self.triangles[index].0;
+            match sheared.cross(triangle) {
+                Some(crossing)
+                    if start.is_behind(crossing.t, crossing.t_error, triangle)
+                        && end.is_behind(
+                            distance - crossing.t,
+                            crossing.t_error + 4.0 * f32::EPSILON * distance,
+                            triangle,
+                        ) =>
+                {
+                    // The tree asks for a distance below the ray's end, which rounding could deny.
+                    crossing.t.min(0.5 * distance)
+                }
+                _ => f32::INFINITY,
+            }
         })
     }
+}
+
+/// A ray's one end, and the unit direction from there along the ray.
+#[derive(Clone, Copy)]
+struct End {
+    position: Vec3,
+    inwards: Vec3,
+}
+
+impl End {
+    /// Whether something that is computed to lie `t` from this end, give or take `error`, lies on the ray's side.
+    #[inline]
+    fn is_behind(&self, t: f32, error: f32, triangle: &[Vec3; 3]) -> bool {
+        t > error || (t >= -error && plane_distance(self.position, self.inwards, triangle) > 0.0)
+    }
+}
+
+/// A ray as the tree wants it.
+#[inline]
+fn tree_ray(origin: Vec3, direction: Vec3, t_max: f32) -> Ray {
+    // The tree takes −0 for negative when it inverts and for positive when it picks near planes, and then misses
+    // everything; −0 + 0 is +0.
+    let direction = direction + Vec3::ZERO;
+    Ray::new(origin.to_array().into(), direction.to_array().into(), 0.0, t_max)
 }
