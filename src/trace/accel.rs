@@ -4,22 +4,28 @@
 //! the tree's slab test rounds and its inverse directions are clamped: without the padding a ray can miss a box
 //! whose triangle it hits. Triangles lie in world space: a static bake needs no instance transforms, and a second
 //! rounding on the way down would break watertightness between neighbours.
+//!
+//! The tree drops every box that a ray leaves within 10⁻⁴ of its origin, a length that knows nothing of the scene: in
+//! metres, light would leave a closed room through its corners. All lengths in here are therefore scaled by a power
+//! of two, which rounds nothing, that makes the scene 2³⁰ units large and the dropped length a trillionth of it.
 
 use super::triangle::{Crossing, ShearedRay, plane_distance};
 use glam::Vec3;
+use obvhs::Boundable;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::builder::build_cwbvh;
 use obvhs::ray::{Ray, RayHit};
-use obvhs::Boundable;
 use std::time::Duration;
 
 /// A tree over world-space triangles.
 pub(super) struct Accel {
     tree: Option<CwBvh>,
-    /// In the tree's order: each triangle and the number under which the caller knows it.
+    /// In the tree's order and units: each triangle and the number under which the caller knows it.
     triangles: Vec<([Vec3; 3], u32)>,
+    /// The tree's units per metre: a power of two.
+    scale: f32,
 }
 
 /// What a ray met.
@@ -27,7 +33,7 @@ pub(super) struct Accel {
 pub(super) struct Hit {
     /// The caller's number of the triangle.
     pub(super) triangle: u32,
-    /// Distance, in lengths of the ray's direction.
+    /// Distance [m].
     pub(super) t: f32,
     /// Weights of the triangle's second and third vertex.
     pub(super) barycentric: [f32; 2],
@@ -48,7 +54,9 @@ impl Accel {
         // The tree's slab test is off by a few units in the last place of the distance between origin and box, and
         // takes direction components below ε as ε, so that a ray in the plane of a flat box leaves it after
         // padding/ε. Four units make that 4·reach, farther than two points of the scene can be apart (2√3·reach).
-        let padding = 4.0 * f32::EPSILON * reach;
+        let scale = scale_for(reach);
+        let padding = 4.0 * f32::EPSILON * reach * scale;
+        let triangles: Vec<[Vec3; 3]> = triangles.iter().map(|corners| corners.map(|vertex| vertex * scale)).collect();
         let boxes: Vec<Padded> = triangles
             .iter()
             .map(|[a, b, c]| {
@@ -58,18 +66,18 @@ impl Accel {
             })
             .collect();
         if boxes.is_empty() {
-            return Self { tree: None, triangles: Vec::new() };
+            return Self { tree: None, triangles: Vec::new(), scale };
         }
         let mut tree = build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
-        let triangles =
-            tree.primitive_indices.iter().map(|&index| (triangles[index as usize], index)).collect();
+        let triangles = tree.primitive_indices.iter().map(|&index| (triangles[index as usize], index)).collect();
         tree.primitive_indices = Vec::new();
-        Self { tree: Some(tree), triangles }
+        Self { tree: Some(tree), triangles, scale }
     }
 
     /// The nearest triangle that the ray meets before `t_max`, from either side. The direction is a unit vector.
     pub(super) fn closest(&self, origin: Vec3, direction: Vec3, t_max: f32) -> Option<Hit> {
         let tree = self.tree.as_ref()?;
+        let (origin, t_max) = (origin * self.scale, t_max * self.scale);
         let sheared = ShearedRay::new(origin, direction);
         let start = End { position: origin, inwards: direction };
         let ray = tree_ray(origin, direction, t_max);
@@ -78,9 +86,7 @@ impl Accel {
         tree.ray_traverse(ray, &mut nearest, |ray, index| {
             let triangle = &self.triangles[index].0;
             match sheared.cross(triangle) {
-                Some(crossing)
-                    if crossing.t < ray.tmax && start.is_behind(crossing.t, crossing.t_error, triangle) =>
-                {
+                Some(crossing) if crossing.t < ray.tmax && start.is_behind(crossing.t, crossing.t_error, triangle) => {
                     winner = Some(crossing);
                     crossing.t
                 }
@@ -89,7 +95,7 @@ impl Accel {
         });
         winner.map(|crossing| Hit {
             triangle: self.triangles[nearest.primitive_id as usize].1,
-            t: crossing.t,
+            t: crossing.t / self.scale,
             barycentric: crossing.barycentric,
         })
     }
@@ -99,9 +105,10 @@ impl Accel {
         let Some(tree) = &self.tree else {
             return false;
         };
+        let (origin, target) = (origin * self.scale, target * self.scale);
         let offset = target - origin;
         let distance = offset.length();
-        if !(distance > 0.0) {
+        if distance.is_nan() || distance == 0.0 {
             return false;
         }
         let direction = offset / distance;
@@ -142,6 +149,13 @@ impl End {
     fn is_behind(&self, t: f32, error: f32, triangle: &[Vec3; 3]) -> bool {
         t > error || (t >= -error && plane_distance(self.position, self.inwards, triangle) > 0.0)
     }
+}
+
+/// The power of two that makes a scene of this reach about 2³⁰ units large.
+fn scale_for(reach: f32) -> f32 {
+    // The exponent's bits; limits keep the scale and its reciprocal normal numbers.
+    let exponent = (reach.to_bits() >> 23) as i32 - 127;
+    2.0_f32.powi((30 - exponent).clamp(-90, 120))
 }
 
 /// A ray as the tree wants it.

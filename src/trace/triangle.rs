@@ -56,11 +56,7 @@ impl ShearedRay {
         let (x, y) = ([1, 2, 0][z], [2, 0, 1][z]);
         let direction = direction.to_array();
         let scale = 1.0 / direction[z];
-        Self {
-            origin: origin.to_array(),
-            axes: [x, y, z],
-            shear: [direction[x] * scale, direction[y] * scale, scale],
-        }
+        Self { origin: origin.to_array(), axes: [x, y, z], shear: [direction[x] * scale, direction[y] * scale, scale] }
     }
 
     /// Crosses the ray's line with a triangle, from either side. `None` if the line passes beside it.
@@ -94,8 +90,7 @@ impl ShearedRay {
         let (x_error, y_error, z_error) =
             (gamma(5.0) * (max_x + max_z), gamma(5.0) * (max_y + max_z), gamma(3.0) * max_z);
         let edge_error = 2.0 * (gamma(2.0) * max_x * max_y + y_error * max_x + x_error * max_y);
-        let t_error =
-            3.0 * (gamma(3.0) * max_edge * max_z + edge_error * max_z + z_error * max_edge) * inverse.abs();
+        let t_error = 3.0 * (gamma(3.0) * max_edge * max_z + edge_error * max_z + z_error * max_edge) * inverse.abs();
         t.is_finite().then_some(Crossing { t, t_error, barycentric: [v * inverse, w * inverse] })
     }
 
