@@ -23,7 +23,7 @@ impl Tracer {
         };
         let position = source.point(Vec2::new(u, v));
         let normal = if source.double_sided && u_side < 0.5 { -source.normal } else { source.normal };
-        let origin = position + normal * (source.error * normal.abs().element_sum());
+        let origin = position + normal * source.error.dot(normal.abs());
         let mut vertex = PathStart::free(origin, normal);
         for step in 0..MAX_STEPS {
             let [u, v, u_survive, _] = sampler.draw(Dimensions::Scatter { vertex: step });

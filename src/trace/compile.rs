@@ -149,7 +149,7 @@ impl World {
             radiance: light.radiance,
             double_sided: false,
             inverse_range: light.range.map_or(0.0, f32::recip),
-            error: 0.0,
+            error: Vec3::ZERO,
         });
     }
 
@@ -186,7 +186,7 @@ fn rectangle_of(first: &TriangleShape, second: &TriangleShape) -> Option<(Vec3, 
     let [u, v] = [1, 2].map(|step| first.vertices[(corner + step) % 3] - origin);
     let size = u.length().min(v.length());
     // Off by as much as f32 vertices must be; a hundredth of that would still show in no image.
-    let slack = 16.0 * (first.error + second.error) + 1e-6 * size;
+    let slack = 16.0 * (first.error + second.error).max_element() + 1e-6 * size;
     let is_parallelogram = (origin + u + v - opposite).length() <= slack;
     let is_right_angled = u.dot(v).abs() <= slack * size;
     let is_one_sided = first.normal.dot(second.normal) > 0.0;

@@ -4,16 +4,18 @@
 //!
 //! A computed point does not lie on its triangle exactly, so a ray from it may meet the triangle that it leaves. The
 //! origin is moved along the geometric normal by a bound on that error, not by a length in scene units (Wächter and
-//! Binder 2019 show why those fail). With u = 2⁻²⁴:
+//! Binder 2019 show why those fail). Each axis has a bound of its own, so that a floor at height 0 is left by next to
+//! nothing however far it reaches. With u = 2⁻²⁴, for each axis:
 //!
-//! - *transform*: vertices are brought to world space in f64 and rounded once, which moves each coordinate by at
+//! - *transform*: vertices are brought to world space in f64 and rounded once, which moves the coordinate by at
 //!   most u·|v| plus 2⁻⁵¹·(|M|·|p| + |t|), the f64 product's own error where large terms cancel;
 //! - *interpolation*: a + β(b − a) + γ(c − a) with β, γ, β + γ in [0, 1], in f32, is off by at most
-//!   γ₃·(|a| + 2·|b − a| + 2·|c − a|) ≤ 27u·m, where m is the largest coordinate of the triangle;
+//!   γ₃·(|a| + 2·|b − a| + 2·|c − a|) ≤ 27u·m, where m is the triangle's largest coordinate on that axis;
 //! - *the move itself* rounds each coordinate once more: u·m and a little.
 //!
-//! The sum, 32u·m and the transform's part, is [`TriangleShape::error`]; an error of e on each axis moves a point
-//! off its plane by at most e·(|nx| + |ny| + |nz|), which is the distance of the move.
+//! The sum, 32u·m and the transform's part, is [`TriangleShape::error`], e; such an error moves a point off its plane
+//! by at most |nx|·ex + |ny|·ey + |nz|·ez, which is the distance of the move. Whether a hit near the new origin lies
+//! on its own side or the other is then decided in f64 ([`super::triangle`]).
 
 use glam::{DMat3, DVec3, Vec3};
 
@@ -25,7 +27,7 @@ pub(super) struct TriangleShape {
     /// Unit normal of the front.
     pub(super) normal: Vec3,
     /// Bound on the error of each coordinate of a point computed on it [m].
-    pub(super) error: f32,
+    pub(super) error: Vec3,
 }
 
 /// Brings points to world space with a known error.
@@ -53,13 +55,13 @@ impl Placement {
     }
 
     /// Bound on the error of each coordinate of [`Self::position`], rounding to f32 aside [m].
-    fn product_error(&self, local: Vec3) -> f64 {
+    fn product_error(&self, local: Vec3) -> DVec3 {
         let local = local.as_dvec3().abs();
         let size = self.matrix.x_axis.abs() * local.x
             + self.matrix.y_axis.abs() * local.y
             + self.matrix.z_axis.abs() * local.z
             + self.translation.abs();
-        size.max_element() * f64::EPSILON * 2.0
+        size * f64::EPSILON * 2.0
     }
 
     /// The world direction of a local normal, of unit length or zero.
@@ -80,9 +82,9 @@ impl Placement {
         let vertices = if self.is_mirrored() { [a, c, b] } else { [a, b, c] };
         let [a, b, c] = vertices.map(Vec3::as_dvec3);
         let normal = (b - a).cross(c - a).try_normalize()?.as_vec3();
-        let largest = vertices.iter().fold(0.0_f32, |size, vertex| size.max(vertex.abs().max_element()));
-        let product_error = local.iter().fold(0.0_f64, |error, vertex| error.max(self.product_error(*vertex)));
-        let error = 16.0 * f32::EPSILON * largest + product_error as f32;
+        let largest = vertices.iter().fold(Vec3::ZERO, |size, vertex| size.max(vertex.abs()));
+        let product_error = local.iter().fold(DVec3::ZERO, |error, vertex| error.max(self.product_error(*vertex)));
+        let error = 16.0 * f32::EPSILON * largest + product_error.as_vec3();
         normal.is_finite().then_some(TriangleShape { vertices, normal, error })
     }
 }
@@ -103,7 +105,7 @@ impl TriangleShape {
     /// `position`, a point on the triangle, moved off it to the side of `direction` by the error bound.
     pub(super) fn leave(&self, position: Vec3, direction: Vec3) -> Vec3 {
         let normal = if self.normal.dot(direction) < 0.0 { -self.normal } else { self.normal };
-        let distance = self.error * normal.abs().element_sum();
+        let distance = self.error.dot(normal.abs());
         let moved = position + normal * distance;
         // Where the move is lost in rounding, the next number on that side.
         let step = |moved: f32, position: f32, normal: f32| {

@@ -1,6 +1,8 @@
-//! What several test files share: scenes by hand and from files, and the statistics that judge them.
+//! What several test files share: scenes by hand and from files, reference tables, and the statistics that judge.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 pub mod glb;
+pub mod meter;
 pub mod scenes;
+pub mod statistics;
 pub mod table;

@@ -34,8 +34,8 @@ pub(in crate::trace) struct Emitter {
     pub(in crate::trace) double_sided: bool,
     /// Reciprocal of the distance from the centre at which Bevy's range window has taken all light [1/m]; 0 for none.
     pub(in crate::trace) inverse_range: f32,
-    /// Bound on the error of a point on it [m].
-    pub(in crate::trace) error: f32,
+    /// Bound on the error of each coordinate of a point on it [m].
+    pub(in crate::trace) error: Vec3,
 }
 
 impl Emitter {
@@ -103,7 +103,7 @@ impl Emitter {
             return None;
         }
         let towards_receiver = if self.normal.dot(wi) > 0.0 { -self.normal } else { self.normal };
-        let target = receiver + offset + towards_receiver * (self.error * self.normal.abs().element_sum());
+        let target = receiver + offset + towards_receiver * self.error.dot(self.normal.abs());
         Some(LightSample { target, wi, radiance, pdf })
     }
 

@@ -1,0 +1,85 @@
+//! Three estimators of the same light, held against each other: they share the geometry and nothing of the sampling
+//! that could be wrong in the same way.
+
+mod common;
+
+use bevy_kiln::bake::{MeterPoint, MeterReading};
+use bevy_kiln::math::{Welford, welch_t_test};
+use bevy_kiln::scene::Scene;
+use bevy_kiln::trace::{Estimator, Transport};
+use common::meter::{at, on_walls, read};
+use common::scenes::{SceneBuilder, generalised_furnace, glowing, grey, lit_room};
+use glam::{Vec2, Vec3};
+
+/// Independent runs of each estimator.
+const RUNS: u64 = 16;
+
+/// Means over all points, one per run, each under a seed of its own.
+fn runs(scene: &Scene, points: &[MeterPoint], samples: u32, estimator: Estimator) -> Welford {
+    let mut means = Welford::default();
+    for run in 0..RUNS {
+        let transport = Transport { estimator, max_bounces: None, seed: 1000 * (estimator as u64 + 1) + run };
+        let readings: Vec<MeterReading> = read(scene, points, samples, transport);
+        means.push(readings.iter().map(|reading| reading.irradiance.y).sum::<f64>() / points.len() as f64);
+    }
+    means
+}
+
+/// Whether two estimators agree: not told apart by Welch's test, and seen well enough that 1 % would be.
+fn agree(a: &Welford, b: &Welford) -> Result<(), String> {
+    let spread = a.standard_error().hypot(b.standard_error());
+    if 4.0 * spread > 0.01 * a.mean() {
+        return Err(format!("too noisy to see 1 %: {} and {} ± {spread}", a.mean(), b.mean()));
+    }
+    let welch = welch_t_test(a, b).ok_or("no spread to judge by")?;
+    if welch.p_value < 1e-4 { Err(format!("{} and {}: p = {}", a.mean(), b.mean(), welch.p_value)) } else { Ok(()) }
+}
+
+fn assert_agreement(scene: &Scene, points: &[MeterPoint], samples: [u32; 3]) {
+    let [mis, light, bsdf] = [Estimator::Mis, Estimator::Light, Estimator::Bsdf];
+    let mis = runs(scene, points, samples[0], mis);
+    let light = runs(scene, points, samples[1], light);
+    let bsdf = runs(scene, points, samples[2], bsdf);
+    agree(&mis, &light).unwrap();
+    agree(&mis, &bsdf).unwrap();
+    // The check itself: half a per cent of bias in so steady a mean, or 2 % in any, must be seen.
+    let mut biased = Welford::default();
+    for run in 0..RUNS {
+        biased.push(mis.mean() * 1.02 + mis.variance().sqrt() * (run as f64 - 7.5) / 5.0);
+    }
+    agree(&mis, &biased).expect_err("a planted bias of 2 % went unseen");
+}
+
+#[test]
+fn glowing_walls_of_different_albedo() {
+    let points = on_walls(Vec3::new(-1.0, 0.0, -2.0), Vec3::new(2.0, 1.0, 1.0), 2);
+    assert_agreement(&generalised_furnace(2.0), &points, [256, 256, 256]);
+}
+
+#[test]
+fn a_light_that_blocks_nothing_in_a_closed_room() {
+    let points = on_walls(Vec3::ZERO, Vec3::splat(4.0), 2);
+    assert_agreement(&lit_room(0.6, 10.0), &points, [1024, 1024, 16384]);
+}
+
+#[test]
+fn two_lamps_a_sky_and_a_blocker() {
+    let double_sided = bevy_kiln::scene::Material { double_sided: true, ..glowing(0.3, 5.0) };
+    let triangle = vec![Vec3::new(-1.0, 1.0, 0.5), Vec3::new(-0.2, 1.6, 0.4), Vec3::new(-0.7, 1.2, 1.4)];
+    let scene = SceneBuilder::default()
+        .quad("floor", Vec3::new(-2.0, 0.0, -2.0), [Vec3::Z * 4.0, Vec3::X * 4.0], grey(0.6))
+        .quad("shelf", Vec3::new(-1.0, 0.5, -1.0), [Vec3::Z, Vec3::X], grey(0.8))
+        .mesh("lamp", triangle, vec![0, 1, 2], None, double_sided)
+        .rect_light(
+            "panel",
+            Vec3::new(0.8, 1.2, -0.3),
+            Vec3::new(-0.3, -1.0, 0.2),
+            Vec2::new(0.7, 0.9),
+            Vec3::splat(4.0),
+        )
+        .sky(Vec3::splat(0.2))
+        .build();
+    let points = [(-0.5, -0.5), (0.3, 0.4), (-1.2, 0.8), (1.1, -0.9), (0.1, 1.6)]
+        .map(|(x, z)| at(Vec3::new(x, 0.0, z), Vec3::Y));
+    assert_agreement(&scene, &points, [1024, 1024, 8192]);
+}
