@@ -59,7 +59,7 @@ fn furnace_of_albedo_ninety_nine_hundredths() {
 
 #[test]
 fn cornell_box() {
-    assert_meter("cornell", 1 << 17);
+    assert_meter("cornell", 1 << 18);
 }
 
 /// The whole atlas of the Cornell box, texel by texel. The reference's `A` is 1 where the texel's centre is covered.
