@@ -4,6 +4,8 @@ pub mod artefact;
 #[cfg(feature = "bake")]
 pub mod bake;
 #[cfg(feature = "bake")]
+pub mod output;
+#[cfg(feature = "bake")]
 pub mod scene;
 #[cfg(feature = "bake")]
 pub mod trace;

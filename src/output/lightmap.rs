@@ -1,0 +1,216 @@
+//! A baked folder: the display maps, their previews, the measured layers if asked for, and last the manifest.
+
+use super::safe_write::{Staged, make_folder};
+use super::{OutputError, OutputFormat, TexelFormat, exr, ktx2, png};
+use crate::artefact::{self, BakedLight, MANIFEST_FILE, MANIFEST_VERSION, Manifest};
+use crate::bake::{BakeWarning, Lightmap, Page};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// The unit of every texel, in the manifest's words.
+const TEXEL_UNIT: &str = "E/pi [cd/m^2]";
+
+/// What was written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenLightmap {
+    /// The files, in the order in which they took their places; the manifest is the last.
+    pub files: Vec<PathBuf>,
+    /// One [`BakeWarning::Clamped`] for each format that could not hold every value.
+    pub warnings: Vec<BakeWarning>,
+    /// Texels that the display maps could not hold as they are.
+    pub clamped: u64,
+}
+
+/// Writes a lightmap into the folder `dir`, which is made if it is missing: `lightmap_<page>.ktx2` to display,
+/// `lightmap_<page>.png` to look at, with [`OutputFormat::Exr`] `lightmap_<page>.exr` to measure with, and
+/// `kiln.ron`, which says where each object lies. `scene_name` is the caller's own word for the scene.
+///
+/// All files are complete on the disk before the first takes its place, and the manifest takes its place last: what
+/// fails before leaves the folder as it was.
+pub fn write_lightmap(
+    lightmap: &Lightmap,
+    scene_name: &str,
+    dir: &Path,
+    format: OutputFormat,
+) -> Result<WrittenLightmap, OutputError> {
+    check(lightmap, dir)?;
+    make_folder(dir)?;
+    let texel_format = format.texel_format();
+    let mut staged = Vec::new();
+    let mut clamped = 0;
+    let mut clamped_in_exr = 0;
+    for (index, page) in lightmap.pages.iter().enumerate() {
+        let encoded = ktx2::ktx2_bytes(page, texel_format);
+        clamped += encoded.clamped;
+        staged.push(Staged::write(&dir.join(page_file(index, "ktx2")), |file| file.write_all(&encoded.bytes))?);
+        staged.push(Staged::write(&dir.join(page_file(index, "png")), |file| png::write_preview(page, file))?);
+        if matches!(format, OutputFormat::Exr) {
+            clamped_in_exr += exr::count_clamped(page);
+            staged.push(Staged::write(&dir.join(page_file(index, "exr")), |file| exr::write_page(page, file))?);
+        }
+    }
+    let manifest = manifest(lightmap, scene_name).to_ron();
+    staged.push(Staged::write(&dir.join(MANIFEST_FILE), |file| file.write_all(manifest.as_bytes()))?);
+    let files = staged.into_iter().map(Staged::place).collect::<Result<_, _>>()?;
+    Ok(WrittenLightmap { files, warnings: warnings(texel_format, clamped, clamped_in_exr), clamped })
+}
+
+fn page_file(index: usize, extension: &str) -> String {
+    format!("lightmap_{index}.{extension}")
+}
+
+fn warnings(format: TexelFormat, clamped: u64, clamped_in_exr: u64) -> Vec<BakeWarning> {
+    let display = BakeWarning::Clamped { texels: clamped, format: format.name(), limit: format.limit() };
+    let exr = BakeWarning::Clamped { texels: clamped_in_exr, format: "exr", limit: f32::MAX };
+    [(clamped, display), (clamped_in_exr, exr)]
+        .into_iter()
+        .filter_map(|(texels, warning)| (texels > 0).then_some(warning))
+        .collect()
+}
+
+fn manifest(lightmap: &Lightmap, scene_name: &str) -> Manifest {
+    let page = |(index, page): (usize, &Page)| {
+        let (width, height) = ktx2::stored_size(page);
+        artefact::Page { file: page_file(index, "ktx2"), width, height }
+    };
+    let placements = lightmap.placements.iter().map(|placement| artefact::Placement {
+        id: placement.id.clone(),
+        page: placement.page,
+        uv_min: placement.uv_min,
+        uv_max: placement.uv_max,
+    });
+    Manifest {
+        version: MANIFEST_VERSION,
+        generator: concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION")).to_owned(),
+        scene: scene_name.to_owned(),
+        texel_unit: TEXEL_UNIT.to_owned(),
+        pages: lightmap.pages.iter().enumerate().map(page).collect(),
+        placements: placements.collect(),
+        baked_lights: lightmap.baked_lights.iter().map(|id| BakedLight { id: id.clone() }).collect(),
+    }
+}
+
+/// Refuses what no file could say.
+fn check(lightmap: &Lightmap, dir: &Path) -> Result<(), OutputError> {
+    for (index, page) in lightmap.pages.iter().enumerate() {
+        let texels = page.width as usize * page.height as usize;
+        let lengths = [page.radiance.len(), page.coverage.len(), page.raw.len(), page.stderr.len()];
+        if texels == 0 || lengths != [texels; 4] {
+            let reason = format!("a page of {} × {} texels has layers of {lengths:?}", page.width, page.height);
+            return Err(OutputError::Malformed { path: dir.join(page_file(index, "ktx2")), reason });
+        }
+    }
+    match lightmap.placements.iter().find(|placement| placement.page as usize >= lightmap.pages.len()) {
+        Some(placement) => Err(OutputError::Malformed {
+            path: dir.join(MANIFEST_FILE),
+            reason: format!("\"{}\" lies on page {}, which is not there", placement.id, placement.page),
+        }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_pages::{lightmap, page, strange_page};
+    use super::*;
+    use crate::artefact::StableId;
+    use std::fs;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_folder_holds_maps_previews_and_manifest() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = folder.path().join("baked/room");
+        let lightmap = lightmap(vec![page(8, 4), page(4, 16)]);
+        let written = write_lightmap(&lightmap, "room.glb", &dir, OutputFormat::Rgba16f).unwrap();
+        let expected =
+            ["lightmap_0.ktx2", "lightmap_0.png", "lightmap_1.ktx2", "lightmap_1.png", "kiln.ron"].map(|n| dir.join(n));
+        assert_eq!(written, WrittenLightmap { files: expected.to_vec(), warnings: vec![], clamped: 0 });
+        assert_eq!(names(&dir).len(), 5);
+
+        let manifest = Manifest::from_ron(&fs::read_to_string(dir.join(MANIFEST_FILE)).unwrap()).unwrap();
+        assert_eq!(manifest.scene, "room.glb");
+        assert_eq!(manifest.texel_unit, "E/pi [cd/m^2]");
+        assert!(manifest.generator.starts_with("bevy_kiln 0."), "{}", manifest.generator);
+        assert_eq!(manifest.pages[1], artefact::Page { file: "lightmap_1.ktx2".into(), width: 4, height: 16 });
+        assert_eq!(manifest.baked_lights, [BakedLight { id: StableId::new("lamp") }]);
+        let placement =
+            artefact::Placement { id: StableId::new("room/part 1"), page: 1, uv_min: [0.0, 0.25], uv_max: [0.5, 1.0] };
+        assert_eq!(manifest.placements[1], placement);
+        let map = fs::read(dir.join(&manifest.pages[1].file)).unwrap();
+        assert_eq!(map, ktx2::ktx2_bytes(&lightmap.pages[1], TexelFormat::Rgba16f).bytes);
+    }
+
+    #[test]
+    fn exr_comes_besides_the_usual_maps() {
+        let (folder, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let lightmap = lightmap(vec![page(8, 4)]);
+        write_lightmap(&lightmap, "a", folder.path(), OutputFormat::Exr).unwrap();
+        write_lightmap(&lightmap, "a", other.path(), OutputFormat::Rgb9e5).unwrap();
+        assert_eq!(names(folder.path()), ["kiln.ron", "lightmap_0.exr", "lightmap_0.ktx2", "lightmap_0.png"]);
+        for name in names(other.path()) {
+            assert_eq!(fs::read(folder.path().join(&name)).unwrap(), fs::read(other.path().join(&name)).unwrap());
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_is_reported() {
+        let folder = tempfile::tempdir().unwrap();
+        let lightmap = lightmap(vec![page(4, 4), strange_page()]);
+        let write = |format| write_lightmap(&lightmap, "a", folder.path(), format).unwrap();
+        let shared = BakeWarning::Clamped { texels: 4, format: "rgb9e5", limit: 65408.0 };
+        let half = BakeWarning::Clamped { texels: 5, format: "rgba16f", limit: 65504.0 };
+        let exr = BakeWarning::Clamped { texels: 4, format: "exr", limit: f32::MAX };
+        assert_eq!(
+            (write(OutputFormat::Rgb9e5).warnings, write(OutputFormat::Rgb9e5).clamped),
+            (vec![shared.clone()], 4)
+        );
+        assert_eq!((write(OutputFormat::Rgba16f).warnings, write(OutputFormat::Rgba16f).clamped), (vec![half], 5));
+        assert_eq!(write(OutputFormat::Exr).warnings, [shared, exr]);
+    }
+
+    #[test]
+    fn a_write_that_fails_leaves_the_old_bake_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = folder.path();
+        write_lightmap(&lightmap(vec![page(8, 4)]), "old", dir, OutputFormat::Rgb9e5).unwrap();
+        let old: Vec<_> = names(dir).into_iter().map(|name| (fs::read(dir.join(&name)).unwrap(), name)).collect();
+
+        let short = Page { height: 5, ..page(8, 4) };
+        let mut nowhere = lightmap(vec![page(4, 4)]);
+        nowhere.placements[0].page = 1;
+        for (malformed, named) in [
+            (lightmap(vec![page(4, 4), short]), "lightmap_1.ktx2"),
+            (lightmap(vec![Page { width: 0, ..page(4, 4) }]), "lightmap_0.ktx2"),
+            (nowhere, MANIFEST_FILE),
+        ] {
+            let error = write_lightmap(&malformed, "new", dir, OutputFormat::Exr).unwrap_err();
+            assert!(matches!(&error, OutputError::Malformed { path, .. } if *path == dir.join(named)), "{error}");
+        }
+        // Two other pages, of which the second has no place.
+        fs::create_dir(dir.join("lightmap_1.ktx2")).unwrap();
+        let error = write_lightmap(&lightmap(vec![page(4, 8); 2]), "new", dir, OutputFormat::Rgb9e5).unwrap_err();
+        assert!(matches!(&error, OutputError::Replace { path, .. } if *path == dir.join("lightmap_1.ktx2")), "{error}");
+        fs::remove_dir(dir.join("lightmap_1.ktx2")).unwrap();
+        let now: Vec<_> = names(dir).into_iter().map(|name| (fs::read(dir.join(&name)).unwrap(), name)).collect();
+        assert_eq!(now, old);
+    }
+
+    #[test]
+    fn a_file_in_the_place_of_the_folder_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = folder.path().join("baked");
+        fs::write(&dir, "kept").unwrap();
+        let result = write_lightmap(&lightmap(vec![page(4, 4)]), "a", &dir, OutputFormat::Rgb9e5);
+        assert_eq!(result, Err(OutputError::FolderIsFile { path: dir.clone() }));
+        assert_eq!(fs::read_to_string(&dir).unwrap(), "kept");
+    }
+}

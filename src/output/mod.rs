@@ -1,0 +1,25 @@
+//! Results as files: what a game displays (KTX2 and the manifest), what a person looks at (PNG) and what is
+//! measured with (EXR).
+//!
+//! It owns the encodings and that nothing which was on disk is lost. It neither changes a value, save to clamp it
+//! to what a format holds, nor knows how a value came about.
+
+mod error;
+mod exr;
+mod format;
+mod ktx2;
+mod lightmap;
+mod picture;
+mod png;
+mod rgb9e5;
+mod safe_write;
+#[cfg(test)]
+mod test_pages;
+mod texels;
+
+pub use error::OutputError;
+pub use format::{OutputFormat, TexelFormat, UnknownFormat};
+pub use ktx2::ktx2_bytes;
+pub use lightmap::{WrittenLightmap, write_lightmap};
+pub use picture::write_picture;
+pub use texels::{Encoded, texel_bytes};

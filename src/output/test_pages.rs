@@ -1,0 +1,49 @@
+//! Pages for the tests of the encoders.
+
+use crate::artefact::StableId;
+use crate::bake::{BakeReport, Lightmap, Page, Placement};
+use glam::Vec3;
+
+/// A page of smooth values, different in every texel and layer; the last texel of each row is uncovered.
+pub(super) fn page(width: u32, height: u32) -> Page {
+    let texel = |index: u32| {
+        let (x, y) = (index % width, index / width);
+        Vec3::new(1.5 + x as f32, 20.0 + y as f32 * 3.25, 0.125 * (x + y) as f32)
+    };
+    let texels = 0..width * height;
+    Page {
+        width,
+        height,
+        radiance: texels.clone().map(texel).collect(),
+        coverage: texels.clone().map(|index| if (index + 1) % width == 0 { 0.0 } else { 0.75 }).collect(),
+        raw: texels.clone().map(|index| texel(index) * 1.01).collect(),
+        stderr: texels.map(|index| texel(index) * 0.02).collect(),
+    }
+}
+
+/// A page whose first five texels hold, in turn, what is not a number, infinity, a negative value, 1e9 and a
+/// coverage that is not a number.
+pub(super) fn strange_page() -> Page {
+    let mut page = page(4, 4);
+    page.coverage.fill(1.0);
+    page.radiance[0] = Vec3::new(f32::NAN, 1.0, 2.0);
+    page.radiance[1] = Vec3::new(f32::INFINITY, f32::NEG_INFINITY, 0.0);
+    page.radiance[2] = Vec3::new(1.0, -1.0, 1.0);
+    page.radiance[3] = Vec3::splat(1e9);
+    page.radiance[4] = Vec3::new(1.0, 2.0, 3.0);
+    page.coverage[4] = f32::NAN;
+    page
+}
+
+/// A lightmap of these pages with one object on each.
+pub(super) fn lightmap(pages: Vec<Page>) -> Lightmap {
+    let placements = (0..pages.len() as u32)
+        .map(|page| Placement {
+            id: StableId::new(format!("room/part {page}")),
+            page,
+            uv_min: [0.0, 0.25],
+            uv_max: [0.5, 1.0],
+        })
+        .collect();
+    Lightmap { pages, placements, baked_lights: vec![StableId::new("lamp")], report: BakeReport::default() }
+}
