@@ -2,9 +2,10 @@
 
 use crate::artefact::{Manifest, ManifestError};
 use bevy::asset::io::Reader;
-use bevy::asset::{AssetLoader, LoadContext};
+use bevy::asset::{AssetLoader, AssetPath, LoadContext};
 use bevy::image::{ImageAddressMode, ImageLoaderSettings, ImageSampler, ImageSamplerDescriptor};
 use bevy::prelude::*;
+use std::path::PathBuf;
 use thiserror::Error;
 
 /// A baked folder. Load it by its manifest: `asset_server.load::<BakedFolder>("level/kiln.ron")`.
@@ -53,7 +54,7 @@ impl AssetLoader for BakedFolderLoader {
         let manifest = Manifest::from_ron(&text)?;
         let here = load_context.path().clone_owned();
         let pages = manifest.pages.iter().map(|page| {
-            let path = here.resolve_embed(&bevy::asset::AssetPath::from(page.file.as_str()));
+            let path = here.resolve_embed(&AssetPath::from(PathBuf::from(&page.file)));
             // KTX2 holds no sampler, and a game may have made `nearest` its default.
             let with_sampler = |settings: &mut ImageLoaderSettings| {
                 settings.sampler = lightmap_sampler();
