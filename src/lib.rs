@@ -1,6 +1,7 @@
 //! Baked global illumination for Bevy, inside the engine.
 
 pub mod artefact;
+pub mod math;
 #[cfg(feature = "bake")]
 pub mod bake;
 #[cfg(feature = "bake")]

@@ -8,8 +8,11 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum BakeError {
     /// The scene: nothing in it gives light.
-    #[error("the scene has no light: add an emissive material or a RectLight, or give it a sky (--sky R,G,B)")]
-    NoLight,
+    #[error("the scene has no light{because}: add an emissive material or a RectLight, or give it a sky (--sky R,G,B)")]
+    NoLight {
+        /// The first fault, in brackets, where a light was left out; else empty.
+        because: String,
+    },
     /// The scene: nothing in it can be baked.
     #[error("nothing in the scene can receive a lightmap: {reason}")]
     NothingToBake {
@@ -77,4 +80,10 @@ pub enum BakeWarning {
         /// The largest value that it holds [cd/m²].
         limit: f32,
     },
+}
+
+impl From<Fault> for BakeWarning {
+    fn from(fault: Fault) -> Self {
+        if fault.kind.costs_only_the_lightmap() { Self::NoLightmap(fault) } else { Self::LeftOut(fault) }
+    }
 }

@@ -1,8 +1,19 @@
-//! The finished lightmap: pages of texels and where each object lies on them.
+//! A lightmap: pages of texels and where each object lies on them, and how they are made.
 
-use super::BakeReport;
+use super::atlas::{Atlas, Chart};
+use super::balance::energy_balance;
+use super::dilate::dilate;
+use super::gather::{Estimate, KeyKind, key, relative_error};
+use super::raster::{Fragment, MIN_COVERAGE, covered_texels};
+use super::texel::Texel;
+use super::workers::Workers;
+use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, Layout, ProgressSink, Stage};
 use crate::artefact::StableId;
-use glam::Vec3;
+use crate::scene::{Fault, Scene, Subject};
+use crate::trace::{Compiled, Dimensions, Sampler, Tracer};
+use glam::{Vec2, Vec3};
+use std::collections::BTreeMap;
+use std::time::Instant;
 
 /// A finished lightmap bake.
 #[derive(Clone, Debug)]
@@ -45,4 +56,186 @@ pub struct Placement {
     pub uv_min: [f32; 2],
     /// Largest corner.
     pub uv_max: [f32; 2],
+}
+
+/// Bakes a lightmap of a scene.
+///
+/// # Errors
+///
+/// [`BakeError`], by who must act. Faults that leave something to bake are warnings in the report.
+pub fn bake_lightmap(
+    scene: &Scene,
+    settings: &BakeSettings,
+    progress: &dyn ProgressSink,
+    cancel: &CancelToken,
+) -> Result<Lightmap, BakeError> {
+    let clock = Instant::now();
+    settings.validate()?;
+    let workers = Workers::new(settings.threads, progress, cancel)?;
+    workers.announce(Stage::Prepare)?;
+    let Compiled { tracer, faults } = Compiled::new(scene);
+    refuse_what_cannot_be_baked(&tracer, &faults)?;
+    let atlas = Atlas::new(scene, &tracer, settings)?;
+    let (sites, overlaps) = sites(scene, &tracer, &atlas, settings);
+    let work = workers.gather(
+        &sites,
+        |site, cancel| {
+            Estimate::gather(site.key, settings.samples_per_texel, cancel, |sobol, rays| {
+                let [u, v, ..] = sobol.draw(Dimensions::Start);
+                let start = site.texel.start(&tracer, Vec2::new(u, v));
+                tracer.diffuse_radiance(&start, sobol, &settings.transport, rays)
+            })
+        },
+        Estimate::relative_stderr,
+    )?;
+    let balance = energy_balance(&tracer, &sites, &work.results, &settings.transport, &workers)?;
+    workers.announce(Stage::Repair)?;
+    let pages = pages(&atlas, &sites, &work.results);
+    let mut warnings: Vec<BakeWarning> = faults.into_iter().map(BakeWarning::from).collect();
+    warnings.extend(overlaps);
+    let report = BakeReport {
+        texels: sites.len() as u64,
+        samples: work.results.iter().map(|estimate| estimate.samples).sum(),
+        rays: work.results.iter().map(|estimate| estimate.rays).sum(),
+        cpu_seconds: work.cpu.as_secs_f64(),
+        wall_seconds: clock.elapsed().as_secs_f64(),
+        relative_stderr: relative_error(&work.results),
+        energy_balance: balance,
+        clamped: 0,
+        warnings,
+    };
+    let baked_lights = scene.lights.iter().filter(|light| light.faults().is_empty()).map(|light| light.id().clone());
+    let mut baked_lights: Vec<StableId> = baked_lights.collect();
+    baked_lights.sort();
+    Ok(Lightmap { placements: placements(scene, &atlas), pages, baked_lights, report })
+}
+
+/// A texel to be measured.
+pub(super) struct Site {
+    pub(super) page: u32,
+    /// Row by row within the page.
+    pub(super) index: u32,
+    pub(super) texel: Texel,
+    pub(super) key: u64,
+}
+
+impl Site {
+    /// Memory that it holds, its estimate included [bytes].
+    pub(super) fn memory_bytes(&self) -> usize {
+        size_of::<Self>() + size_of::<Estimate>() + self.texel.heap_bytes()
+    }
+}
+
+/// Every covered texel in an order that keeps neighbours together, and warnings where objects overlap.
+pub(super) fn sites(
+    scene: &Scene,
+    tracer: &Tracer,
+    atlas: &Atlas<'_>,
+    settings: &BakeSettings,
+) -> (Vec<Site>, Vec<BakeWarning>) {
+    let mut sites = Vec::new();
+    let mut overlapping: BTreeMap<Subject, u64> = BTreeMap::new();
+    for page in 0..atlas.pages.len() as u32 {
+        let [width, _] = atlas.pages[page as usize];
+        let fragments = fragments(atlas, page);
+        for group in fragments.chunk_by(|a, b| a.texel == b.texel) {
+            let index = group[0].texel;
+            let (x, y) = (index % width, index / width);
+            let texel = Texel::new(tracer, &atlas.charts, group, [x, y]);
+            if !texel.is_covered() {
+                continue;
+            }
+            let chart = &atlas.charts[group[0].receiver as usize];
+            let instance = &scene.instances[chart.receiver.instance];
+            if texel.coverage > 1.0 + MIN_COVERAGE {
+                *overlapping.entry(Subject::Instance(instance.name.clone())).or_default() += 1;
+            }
+            let key = match settings.layout {
+                Layout::Packed => {
+                    let place = u64::from(y - chart.origin[1]) << 32 | u64::from(x - chart.origin[0]);
+                    key(KeyKind::Texel, settings.transport.seed, instance.id.key(), place)
+                }
+                Layout::Shared { .. } => key(KeyKind::Texel, settings.transport.seed, 0, u64::from(index)),
+            };
+            sites.push(Site { page, index, texel, key });
+        }
+    }
+    let warnings = overlapping
+        .into_iter()
+        .map(|(subject, texels)| BakeWarning::OverlappingUv1 { subject, texels })
+        .collect();
+    (sites, warnings)
+}
+
+/// What triangles cover of a page, texel by texel.
+fn fragments(atlas: &Atlas<'_>, page: u32) -> Vec<Fragment> {
+    let size = atlas.pages[page as usize];
+    let mut fragments = Vec::new();
+    for (receiver, chart) in atlas.charts.iter().enumerate().filter(|(_, chart)| chart.page == page) {
+        for triangle in 0..chart.triangle_count() {
+            covered_texels(chart.triangle(triangle), size, |x, y| {
+                fragments.push(Fragment { texel: y * size[0] + x, receiver: receiver as u32, triangle });
+            });
+        }
+    }
+    fragments.sort_unstable();
+    fragments
+}
+
+fn pages(atlas: &Atlas<'_>, sites: &[Site], estimates: &[Estimate]) -> Vec<Page> {
+    let empty = |&[width, height]: &[u32; 2]| {
+        let count = width as usize * height as usize;
+        Page {
+            width,
+            height,
+            radiance: Vec::new(),
+            coverage: vec![0.0; count],
+            raw: vec![Vec3::ZERO; count],
+            stderr: vec![Vec3::ZERO; count],
+        }
+    };
+    let mut pages: Vec<Page> = atlas.pages.iter().map(empty).collect();
+    for (site, estimate) in sites.iter().zip(estimates) {
+        let page = &mut pages[site.page as usize];
+        let index = site.index as usize;
+        page.coverage[index] = site.texel.coverage.min(1.0) as f32;
+        page.raw[index] = estimate.mean.as_vec3();
+        page.stderr[index] = estimate.stderr.as_vec3();
+    }
+    for page in &mut pages {
+        page.radiance = page.raw.clone();
+        dilate(&mut page.radiance, &page.coverage, [page.width, page.height]);
+    }
+    pages
+}
+
+fn placements(scene: &Scene, atlas: &Atlas<'_>) -> Vec<Placement> {
+    let place = |chart: &Chart<'_>| {
+        let page = atlas.pages[chart.page as usize];
+        let uv = |texel: [u32; 2]| [0, 1].map(|axis| (f64::from(texel[axis]) / f64::from(page[axis])) as f32);
+        Placement {
+            id: scene.instances[chart.receiver.instance].id.clone(),
+            page: chart.page,
+            uv_min: uv(chart.origin),
+            uv_max: uv([0, 1].map(|axis| chart.origin[axis] + chart.size[axis])),
+        }
+    };
+    atlas.charts.iter().map(place).collect()
+}
+
+/// Refuses a scene in which a bake would have nothing to do.
+pub(super) fn refuse_what_cannot_be_baked(tracer: &Tracer, faults: &[Fault]) -> Result<(), BakeError> {
+    let first_fault = || faults.first().map_or_else(String::new, |fault| format!(" ({fault})"));
+    if tracer.receivers().is_empty() {
+        let reason = if faults.is_empty() {
+            "there is no mesh in it, or none is marked as a receiver".to_owned()
+        } else {
+            faults.iter().map(Fault::to_string).collect::<Vec<_>>().join("; ")
+        };
+        return Err(BakeError::NothingToBake { reason });
+    }
+    if !tracer.has_light() {
+        return Err(BakeError::NoLight { because: first_fault() });
+    }
+    Ok(())
 }

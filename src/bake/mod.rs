@@ -1,21 +1,38 @@
-//! What is measured and where it is kept.
+//! What is measured and where it is kept: lightmaps, light meters and pictures.
+//!
+//! A lightmap is made in five steps, [`bake_lightmap`] in a screen:
+//!
+//! 1. the scene is compiled for rays; what is at fault is left out and named;
+//! 2. `atlas` gives every object its rectangle of texels;
+//! 3. `raster` finds the texels that each triangle covers, however little of them;
+//! 4. `gather` traces paths from the covered part of each texel, in parallel, in independently scrambled replicates
+//!    whose spread is the texel's standard error;
+//! 5. `dilate` fills the texels beside the charts that texture filtering also reads.
+//!
+//! Every number is a function of the scene, the settings and the seed: threads and order cannot matter.
 
+mod atlas;
+mod balance;
+mod dilate;
 mod error;
+mod gather;
 mod lightmap;
+mod meter;
+mod picture;
+mod plan;
 mod progress;
+mod raster;
 mod report;
 mod settings;
-mod stub;
-pub use stub::*;
-mod atlas {
-    pub(crate) const MAX_PAGE_SIZE: u32 = 8192;
-}
+mod texel;
+mod workers;
 
 pub use error::{BakeError, BakeWarning};
-pub use lightmap::{Lightmap, Page, Placement};
+pub use gather::REPLICATES;
+pub use lightmap::{Lightmap, Page, Placement, bake_lightmap};
+pub use meter::{Measurement, MeterPoint, MeterReading, MeterSettings, measure_irradiance};
+pub use picture::{Picture, PictureSettings, render_picture};
+pub use plan::{BakePlan, Effect, PlannedEffect, Prediction};
 pub use progress::{CancelToken, Progress, ProgressSink, Stage};
 pub use report::{BakeReport, RelativeError};
 pub use settings::{BakeSettings, Layout};
-
-/// How many independently scrambled runs share the paths of each texel; their spread is its standard error.
-pub const REPLICATES: u32 = 16;

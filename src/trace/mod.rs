@@ -1,5 +1,22 @@
 //! How light moves: a scene compiled for rays and the estimators on it. Has never heard of lightmaps.
+//!
+//! [`Transport`] says how light is followed; what asks for light is in [`bake`](crate::bake).
 
+mod accel;
+mod bsdf;
+mod closed;
+mod compile;
+mod light;
+mod mis;
+mod path;
+mod sampler;
+mod surface;
+mod tracer;
 mod transport;
+mod triangle;
 
+pub(crate) use compile::Compiled;
+pub(crate) use path::PathStart;
+pub(crate) use sampler::{Dimensions, Sampler, Sobol};
+pub(crate) use tracer::{Receiver, Tracer};
 pub use transport::{Estimator, Transport};

@@ -1,0 +1,124 @@
+//! The covered part of one texel, and points spread over it.
+
+use super::atlas::Chart;
+use super::raster::{Fragment, MIN_COVERAGE, Polygon, triangle_area};
+use crate::math::square_to_triangle;
+use crate::trace::{PathStart, Receiver, Tracer};
+use glam::{DVec2, Vec2, Vec3};
+
+/// A piece of a triangle inside a texel, in weights of the triangle's second and third vertex.
+#[derive(Clone, Copy, Debug)]
+struct Patch {
+    /// World number of the triangle.
+    triangle: u32,
+    /// Unit shading normals of its vertices, or zeros for a flat one.
+    normals: [Vec3; 3],
+    corner: DVec2,
+    edges: [DVec2; 2],
+    shape: PatchShape,
+    /// Share of the texel up to and with this piece.
+    share_end: f64,
+    share: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PatchShape {
+    Triangle,
+    Parallelogram,
+}
+
+/// The covered part of one texel.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Texel {
+    patches: Vec<Patch>,
+    /// Covered share, counting twice what is covered twice.
+    pub(super) coverage: f64,
+    /// Area of the covered part in the world, by the triangle's number [m²].
+    pub(super) areas: Vec<(u32, f64)>,
+}
+
+impl Texel {
+    /// Puts together the texel that `fragments` share, at `x`, `y` of a page.
+    pub(super) fn new(tracer: &Tracer, charts: &[Chart<'_>], fragments: &[Fragment], [x, y]: [u32; 2]) -> Self {
+        let mut texel = Self::default();
+        for fragment in fragments {
+            let chart = &charts[fragment.receiver as usize];
+            texel.add(tracer, chart, fragment.triangle, [x, y]);
+        }
+        texel
+    }
+
+    /// Whether enough is covered to count.
+    pub(super) fn is_covered(&self) -> bool {
+        self.coverage >= MIN_COVERAGE
+    }
+
+    /// Memory behind its lists [bytes].
+    pub(super) fn heap_bytes(&self) -> usize {
+        self.patches.capacity() * size_of::<Patch>() + self.areas.capacity() * size_of::<(u32, f64)>()
+    }
+
+    fn add(&mut self, tracer: &Tracer, chart: &Chart<'_>, triangle: u32, [x, y]: [u32; 2]) {
+        let corners = chart.triangle(triangle);
+        let polygon = Polygon::clip(corners, x, y);
+        let [a, b, c] = corners;
+        let double_area = (b - a).perp_dot(c - a);
+        let barycentric = |point: DVec2| {
+            DVec2::new((point - a).perp_dot(c - a) / double_area, (b - a).perp_dot(point - a) / double_area)
+        };
+        let world = chart.receiver.first_triangle + triangle;
+        let texel_area = polygon.area();
+        self.areas.push((world, tracer.area(world) * texel_area / triangle_area(a, b, c)));
+        let mut push = |corners: [DVec2; 3], share: f64, shape| {
+            self.coverage += share;
+            let corner = barycentric(corners[0]);
+            self.patches.push(Patch {
+                triangle: world,
+                normals: shading_normals(chart.receiver, triangle),
+                corner,
+                edges: [barycentric(corners[1]) - corner, barycentric(corners[2]) - corner],
+                shape,
+                share_end: self.coverage,
+                share,
+            });
+        };
+        // A whole texel in one triangle, the common case, keeps the stratification of its square.
+        if polygon.corners().len() == 4 && texel_area > 1.0 - 1e-9 {
+            let low = DVec2::new(f64::from(x), f64::from(y));
+            push([low, low + DVec2::X, low + DVec2::Y], texel_area, PatchShape::Parallelogram);
+        } else {
+            for corners in polygon.fan() {
+                let share = triangle_area(corners[0], corners[1], corners[2]);
+                if share > 0.0 {
+                    push(corners, share, PatchShape::Triangle);
+                }
+            }
+        }
+    }
+
+    /// A point of the covered part, uniform over its area in the texel.
+    pub(super) fn start(&self, tracer: &Tracer, u: Vec2) -> PathStart {
+        let place = f64::from(u.x) * self.coverage;
+        let patch = &self.patches[self.patches.partition_point(|patch| patch.share_end <= place).min(self.patches.len() - 1)];
+        let within = (place - (patch.share_end - patch.share)) / patch.share;
+        let u = Vec2::new((within as f32).clamp(0.0, 1.0 - f32::EPSILON * 0.5), u.y);
+        let weights = match patch.shape {
+            PatchShape::Triangle => square_to_triangle(u),
+            PatchShape::Parallelogram => u,
+        };
+        let point = patch.corner + patch.edges[0] * f64::from(weights.x) + patch.edges[1] * f64::from(weights.y);
+        let second = point.x.clamp(0.0, 1.0);
+        let third = point.y.clamp(0.0, 1.0 - second);
+        let [a, b, c] = patch.normals;
+        let smooth = a * (1.0 - second - third) as f32 + b * second as f32 + c * third as f32;
+        let flat = tracer.normal(patch.triangle);
+        let normal = smooth.try_normalize().unwrap_or(flat);
+        // Normals that point into the surface come from broken exports; the flat one is then the better guess.
+        let normal = if normal.dot(flat) > 0.0 { normal } else { flat };
+        tracer.start_on_triangle(patch.triangle, [second as f32, third as f32], normal)
+    }
+}
+
+fn shading_normals(receiver: &Receiver, triangle: u32) -> [Vec3; 3] {
+    receiver.vertices[triangle as usize].map(|vertex| receiver.normals[vertex as usize])
+}

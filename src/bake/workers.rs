@@ -1,0 +1,113 @@
+//! Threads that work through a list, tell how far they are, and stop when asked to.
+
+use super::{BakeError, CancelToken, Progress, ProgressSink, Stage};
+use cpu_time::ThreadTime;
+use rayon::prelude::*;
+use std::num::NonZeroUsize;
+use std::sync::Mutex;
+use std::time::Duration;
+
+/// Items that one thread takes at a time: few enough to share out evenly, many enough to keep neighbours together.
+const CHUNK: usize = 32;
+
+/// Threads, and whom they answer to.
+pub(super) struct Workers<'a> {
+    pool: rayon::ThreadPool,
+    progress: &'a dyn ProgressSink,
+    cancel: &'a CancelToken,
+}
+
+/// What the workers made, in the order of the items.
+pub(super) struct Work<T> {
+    pub(super) results: Vec<T>,
+    /// Processor time of all threads.
+    pub(super) cpu: Duration,
+}
+
+#[derive(Default)]
+struct Tally {
+    done: u64,
+    cpu: Duration,
+    error_sum: f64,
+    error_count: u64,
+}
+
+impl<'a> Workers<'a> {
+    pub(super) fn new(
+        threads: Option<NonZeroUsize>,
+        progress: &'a dyn ProgressSink,
+        cancel: &'a CancelToken,
+    ) -> Result<Self, BakeError> {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.map_or(0, NonZeroUsize::get))
+            .thread_name(|index| format!("kiln {index}"))
+            .build()
+            .map_err(|error| BakeError::Threads { reason: error.to_string() })?;
+        Ok(Self { pool, progress, cancel })
+    }
+
+    /// Tells about a stage that is not worked through by items.
+    pub(super) fn announce(&self, stage: Stage) -> Result<(), BakeError> {
+        self.progress.report(Progress { stage, done: 0, total: 1, relative_stderr: None });
+        if self.cancel.is_cancelled() { Err(BakeError::Cancelled) } else { Ok(()) }
+    }
+
+    /// Does `work` on every item. `error` reads a result's relative standard error, where it has one.
+    pub(super) fn gather<I: Sync, T: Send>(
+        &self,
+        items: &[I],
+        work: impl Fn(&I, &CancelToken) -> Option<T> + Sync,
+        error: impl Fn(&T) -> Option<f64> + Sync,
+    ) -> Result<Work<T>, BakeError> {
+        let tally = Mutex::new(Tally::default());
+        let chunk_of = |chunk: &[I]| -> Option<Vec<T>> {
+            let clock = ThreadTime::now();
+            let results: Vec<T> =
+                chunk.iter().map(|item| work(item, self.cancel)).collect::<Option<Vec<T>>>()?;
+            self.tell(&tally, items.len(), &results, clock.elapsed(), &error);
+            Some(results)
+        };
+        let chunks: Option<Vec<Vec<T>>> = self.pool.install(|| items.par_chunks(CHUNK).map(chunk_of).collect());
+        let results = chunks.ok_or(BakeError::Cancelled)?.into_iter().flatten().collect();
+        let cpu = tally.lock().map_or(Duration::ZERO, |tally| tally.cpu);
+        Ok(Work { results, cpu })
+    }
+
+    /// Does `work` on every item without a word.
+    pub(super) fn gather_quietly<I: Sync, T: Send>(
+        &self,
+        items: &[I],
+        work: impl Fn(&I, &CancelToken) -> Option<T> + Sync,
+    ) -> Result<Vec<T>, BakeError> {
+        let results: Option<Vec<T>> =
+            self.pool.install(|| items.par_iter().map(|item| work(item, self.cancel)).collect());
+        results.ok_or(BakeError::Cancelled)
+    }
+
+    fn tell<T>(
+        &self,
+        tally: &Mutex<Tally>,
+        total: usize,
+        results: &[T],
+        cpu: Duration,
+        error: impl Fn(&T) -> Option<f64>,
+    ) {
+        // A poisoned lock means that another thread panicked; its panic is what matters.
+        let Ok(mut tally) = tally.lock() else {
+            return;
+        };
+        tally.done += results.len() as u64;
+        tally.cpu += cpu;
+        for error in results.iter().filter_map(error) {
+            tally.error_sum += error;
+            tally.error_count += 1;
+        }
+        let relative_stderr = (tally.error_count > 0).then(|| tally.error_sum / tally.error_count as f64);
+        self.progress.report(Progress {
+            stage: Stage::Gather,
+            done: tally.done,
+            total: total as u64,
+            relative_stderr,
+        });
+    }
+}

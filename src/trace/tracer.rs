@@ -1,0 +1,125 @@
+//! A scene compiled for rays.
+
+use super::accel::Accel;
+use super::light::Emitters;
+use super::path::PathStart;
+use super::surface::TriangleShape;
+use glam::{DVec3, Vec3};
+
+/// No emitter.
+pub(super) const NOT_EMISSIVE: u32 = u32::MAX;
+
+/// How a surface answers light.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surface {
+    pub(super) diffuse_albedo: Vec3,
+    pub(super) emitted_radiance: Vec3,
+    pub(super) double_sided: bool,
+}
+
+/// A scene compiled for rays. Independent of the order in which the scene lists its parts.
+pub(crate) struct Tracer {
+    pub(super) accel: Accel,
+    pub(super) triangles: Vec<TriangleShape>,
+    /// Per triangle, index into `surfaces`.
+    pub(super) surface_of: Vec<u32>,
+    pub(super) surfaces: Vec<Surface>,
+    /// Per triangle, index into `emitters` or [`NOT_EMISSIVE`].
+    pub(super) emitter_of: Vec<u32>,
+    pub(super) emitters: Emitters,
+    pub(super) sky_radiance: Vec3,
+    /// Length of the diagonal of the scene's bounds [m].
+    pub(super) extent: f32,
+    pub(super) receivers: Vec<Receiver>,
+}
+
+/// A placed mesh that asks for a lightmap.
+#[derive(Clone, Debug)]
+pub(crate) struct Receiver {
+    /// Index into the scene's instances.
+    pub(crate) instance: usize,
+    /// World number of its first triangle.
+    pub(crate) first_triangle: u32,
+    /// Per triangle, the mesh's vertices in the order of its world triangle.
+    pub(crate) vertices: Vec<[u32; 3]>,
+    /// Per mesh vertex, the unit shading normal in the world, or zero where there is none.
+    pub(crate) normals: Vec<Vec3>,
+}
+
+impl Tracer {
+    /// Objects that ask for a lightmap and can have one, ordered by id.
+    pub(crate) fn receivers(&self) -> &[Receiver] {
+        &self.receivers
+    }
+
+    /// Whether anything gives light.
+    pub(crate) fn has_light(&self) -> bool {
+        !self.emitters.is_empty() || self.sky_radiance != Vec3::ZERO
+    }
+
+    /// Radiance of the sky [cd/m²].
+    pub(crate) fn sky_radiance(&self) -> Vec3 {
+        self.sky_radiance
+    }
+
+    /// Triangles in the world.
+    pub(crate) fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Glowing shapes.
+    pub(crate) fn emitter_count(&self) -> usize {
+        self.emitters.len()
+    }
+
+    /// Diffuse albedo of a triangle.
+    pub(crate) fn diffuse_albedo(&self, triangle: u32) -> Vec3 {
+        self.surfaces[self.surface_of[triangle as usize] as usize].diffuse_albedo
+    }
+
+    /// World vertices of a triangle, counter-clockwise seen from its front [m].
+    pub(crate) fn vertices(&self, triangle: u32) -> [Vec3; 3] {
+        self.triangles[triangle as usize].vertices
+    }
+
+    /// Unit normal of a triangle's front.
+    pub(crate) fn normal(&self, triangle: u32) -> Vec3 {
+        self.triangles[triangle as usize].normal
+    }
+
+    /// Area of a triangle [m²].
+    pub(crate) fn area(&self, triangle: u32) -> f64 {
+        self.triangles[triangle as usize].area()
+    }
+
+    /// Flux that all sources give off, per channel [lm]; `None` under a sky, whose flux has no bound.
+    pub(crate) fn emitted_flux(&self) -> Option<DVec3> {
+        (self.sky_radiance == Vec3::ZERO).then(|| {
+            self.emitters
+                .iter()
+                .map(|emitter| {
+                    let sides = if emitter.double_sided { 2.0 } else { 1.0 };
+                    emitter.radiance.as_dvec3() * (sides * std::f64::consts::PI * emitter.area())
+                })
+                .sum()
+        })
+    }
+
+    /// A start of paths on a triangle, at these weights of its second and third vertex, on the side of `normal`, the
+    /// unit normal that receives.
+    pub(crate) fn start_on_triangle(&self, triangle: u32, barycentric: [f32; 2], normal: Vec3) -> PathStart {
+        let shape = &self.triangles[triangle as usize];
+        PathStart::new(shape, shape.position(barycentric), normal)
+    }
+
+    /// A start of paths at a point of the world. Within 1e-5 of the scene's extent from a surface, on the side that
+    /// `normal` points to, the point counts as lying on it.
+    pub(crate) fn start_at(&self, position: Vec3, normal: Vec3) -> PathStart {
+        let reach = 1e-5 * self.extent;
+        let above = position + normal * reach;
+        match self.accel.closest(above, -normal, 2.0 * reach) {
+            Some(hit) => self.start_on_triangle(hit.triangle, hit.barycentric, normal),
+            None => PathStart::free(position, normal),
+        }
+    }
+}
