@@ -4,6 +4,7 @@ pub mod artefact;
 pub mod math;
 #[cfg(feature = "bake")]
 pub mod bake;
+pub mod math;
 #[cfg(feature = "bake")]
 pub mod output;
 #[cfg(feature = "bake")]
