@@ -1,7 +1,6 @@
 //! Baked global illumination for Bevy, inside the engine.
 
 pub mod artefact;
-pub mod math;
 #[cfg(feature = "bake")]
 pub mod bake;
 pub mod math;

@@ -6,7 +6,7 @@ use crate::points::Table;
 use crate::progress::Show;
 use crate::scene;
 use crate::talk::{Talk, warn};
-use bevy_kiln::bake::{CancelToken, measure_irradiance};
+use bevy_kiln::bake::{CancelToken, MeterSettings, measure_irradiance};
 use std::io::Write;
 use std::path::Path;
 
@@ -15,10 +15,12 @@ pub(crate) fn run(args: &IrradianceArgs, cancel: &CancelToken) -> Result<(), Fai
     let extraction = scene::open(&args.scene, cancel)?;
     warn(&extraction.warnings.iter().map(ToString::to_string).collect::<Vec<_>>());
     let show = Show::new();
-    let transport = scene::transport(&args.scene);
-    let (samples, threads) = (args.spp.get(), args.scene.threads);
-    let result =
-        measure_irradiance(&extraction.scene, &table.points, samples, &transport, threads, &show, cancel);
+    let settings = MeterSettings {
+        transport: scene::transport(&args.scene),
+        samples_per_point: args.spp.get(),
+        threads: args.scene.threads,
+    };
+    let result = measure_irradiance(&extraction.scene, &table.points, &settings, &show, cancel);
     show.end();
     let measured = result?;
     if cancel.is_cancelled() {

@@ -58,7 +58,7 @@ impl Table {
         writer.write_record(kept.iter().map(|&column| &self.header[column]).chain(ANSWER)).map_err(failed)?;
         for (row, reading) in self.rows.iter().zip(readings) {
             let (e, se) = (reading.irradiance, reading.stderr);
-            let numbers = [e.x, e.y, e.z, se.x, se.y, se.z].map(|number| nine_digits(f64::from(number)));
+            let numbers = [e.x, e.y, e.z, se.x, se.y, se.z].map(nine_digits);
             let asked = kept.iter().map(|&column| row[column].to_owned());
             writer
                 .write_record(asked.chain(numbers).chain([reading.samples.to_string()]))
