@@ -3,10 +3,11 @@
 
 use super::KilnPlugin;
 use bevy::app::{App, PluginGroup, PluginGroupBuilder, TaskPoolPlugin};
-use bevy::asset::{AssetPlugin, LoadState, RecursiveDependencyLoadState, UnapprovedPathMode};
+use bevy::asset::{AssetLoadError, AssetPlugin, LoadState, RecursiveDependencyLoadState, UnapprovedPathMode};
 use bevy::gltf::{Gltf, GltfPlugin};
 use bevy::image::{CompressedImageFormatSupport, CompressedImageFormats};
 use bevy::prelude::*;
+use bevy::window::{ExitCondition, WindowPlugin};
 use bevy::world_serialization::{DynamicWorld, DynamicWorldRoot, WorldAssetRoot, WorldSerializationPlugin};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -78,6 +79,8 @@ impl PluginGroup for WindowlessPlugins {
                 ..default()
             })
             .add(WorldSerializationPlugin)
+            // No window; but cameras listen for what windows do.
+            .add(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
             .add(bevy::render::RenderPlugin {
                 render_creation: no_gpu(),
                 ..default()
@@ -166,13 +169,22 @@ fn wait(app: &mut App, id: bevy::asset::UntypedAssetId, path: &Path) -> Result<(
     loop {
         app.update();
         let server = app.world().resource::<AssetServer>();
-        let broken = |reason: String| OpenError::Broken { path: path.to_owned(), reason };
+        let broken = |error: &AssetLoadError| OpenError::Broken { path: path.to_owned(), reason: reason(error) };
         match (server.load_state(id), server.recursive_dependency_load_state(id)) {
-            (LoadState::Failed(error), _) => return Err(broken(error.to_string())),
-            (_, RecursiveDependencyLoadState::Failed(error)) => return Err(broken(error.to_string())),
+            (LoadState::Failed(error), _) => return Err(broken(&error)),
+            (_, RecursiveDependencyLoadState::Failed(error)) => return Err(broken(&error)),
             (LoadState::Loaded, RecursiveDependencyLoadState::Loaded) => return Ok(()),
             _ if start.elapsed() > PATIENCE => return Err(OpenError::TooSlow { path: path.to_owned() }),
             _ => std::thread::sleep(Duration::from_millis(1)),
         }
     }
+}
+
+/// What went wrong, without the loader's type and without a stack trace.
+fn reason(error: &AssetLoadError) -> String {
+    let text = match error {
+        AssetLoadError::AssetLoaderError(error) => error.error().to_string(),
+        other => other.to_string(),
+    };
+    text.lines().next().unwrap_or_default().trim().to_owned()
 }

@@ -12,7 +12,7 @@ use std::path::Path;
 
 pub(crate) fn run(args: &IrradianceArgs, cancel: &CancelToken) -> Result<(), Failure> {
     let table = Table::read(&args.points)?;
-    let extraction = scene::open(&args.scene, cancel)?;
+    let extraction = scene::open_without_lightmaps(&args.scene, cancel)?;
     warn(&extraction.warnings.iter().map(ToString::to_string).collect::<Vec<_>>());
     let show = Show::new();
     let settings = MeterSettings {

@@ -10,10 +10,13 @@ use serde_json::json;
 pub(crate) fn run(args: &PlanArgs, cancel: &CancelToken) -> Result<(), Failure> {
     let settings = scene::bake_settings(&args.scene, &args.layout)?;
     let extraction = scene::open(&args.scene, cancel)?;
-    let plan = BakePlan::for_scene(&extraction.scene, &settings)?;
     let mut warnings: Vec<String> = extraction.warnings.iter().map(ToString::to_string).collect();
-    warnings.extend(plan.warnings.iter().map(ToString::to_string));
+    // First of all, as they may be why there is no plan.
     warn(&warnings);
+    let plan = BakePlan::for_scene(&extraction.scene, &settings)?;
+    let planned: Vec<String> = plan.warnings.iter().map(ToString::to_string).collect();
+    warn(&planned);
+    warnings.extend(planned);
     Talk::beside(args.json).plan(&plan);
     if args.json {
         Talk::Out.say(summary(&plan, &warnings));

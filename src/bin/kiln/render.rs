@@ -16,7 +16,7 @@ pub(crate) fn run(args: &RenderArgs, cancel: &CancelToken) -> Result<(), Failure
         let path = args.output.display();
         return Err(Failure::Arguments(format!("{path} is no picture that can be written; end it in .png or .exr")));
     }
-    let extraction = scene::open(&args.scene, cancel)?;
+    let extraction = scene::open_without_lightmaps(&args.scene, cancel)?;
     warn(&extraction.warnings.iter().map(ToString::to_string).collect::<Vec<_>>());
     let camera = camera(args, &extraction.scene)?;
     let (width, height) = args.size;

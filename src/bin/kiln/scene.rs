@@ -23,6 +23,15 @@ pub(crate) fn open(args: &SceneArgs, cancel: &CancelToken) -> Result<Extraction,
     Ok(extract_scene(app.world_mut(), &settings))
 }
 
+/// The same for what makes no lightmaps, so that nothing is said about those that cannot be made.
+pub(crate) fn open_without_lightmaps(args: &SceneArgs, cancel: &CancelToken) -> Result<Extraction, Failure> {
+    let mut extraction = open(args, cancel)?;
+    for instance in &mut extraction.scene.instances {
+        instance.lightmap = None;
+    }
+    Ok(extraction)
+}
+
 pub(crate) fn transport(args: &SceneArgs) -> Transport {
     let estimator = match args.estimator {
         EstimatorArg::Mis => Estimator::Mis,

@@ -32,7 +32,8 @@ impl Talk {
             self.say(format_args!("  {mark} {}: {}", effect.effect, effect.reason));
         }
         let mebibytes = plan.memory_bytes as f64 / f64::from(1 << 20);
-        self.say(format_args!("  {} texels on {} pages, {mebibytes:.1} MiB", plan.texels, plan.pages));
+        let pages = if plan.pages == 1 { "page" } else { "pages" };
+        self.say(format_args!("  {} texels on {} {pages}, {mebibytes:.1} MiB", plan.texels, plan.pages));
         for prediction in &plan.predicted {
             let error = 100.0 * prediction.error;
             self.say(format_args!("  about {} for an error of {error:.2} %", duration(prediction.seconds)));
