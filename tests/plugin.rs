@@ -119,8 +119,10 @@ fn snapshot(world: &mut World) -> Vec<String> {
     let mut lights = world.query::<(Entity, &RectLight)>();
     lines.extend(lights.iter(world).map(|(entity, light)| format!("{entity} {light:?}")));
     lines.push(format!("{:?}", world.resource::<GlobalAmbientLight>()));
-    let mut archetypes = world.query::<EntityRef>();
-    lines.extend(archetypes.iter(world).map(|entity| format!("{} {}", entity.id(), entity.archetype().component_count())));
+    let mut archetypes = world.query_filtered::<EntityRef, With<Transform>>();
+    lines.extend(
+        archetypes.iter(world).map(|entity| format!("{} {}", entity.id(), entity.archetype().component_count())),
+    );
     lines.sort();
     lines
 }

@@ -81,10 +81,7 @@ impl PluginGroup for WindowlessPlugins {
             .add(WorldSerializationPlugin)
             // No window; but cameras listen for what windows do.
             .add(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
-            .add(bevy::render::RenderPlugin {
-                render_creation: no_gpu(),
-                ..default()
-            })
+            .add(bevy::render::RenderPlugin { render_creation: no_gpu(), ..default() })
             .add(ImagePlugin::default())
             .add(bevy::mesh::MeshPlugin)
             .add(bevy::camera::CameraPlugin)

@@ -30,9 +30,9 @@ pub(crate) fn run(args: &IrradianceArgs, cancel: &CancelToken) -> Result<(), Fai
     let answer = table.answer(&measured.readings)?;
     match &args.output {
         Some(path) => write_whole(path, &answer)?,
-        None => std::io::stdout().write_all(&answer).map_err(|error| {
-            Failure::Failed(format!("the answer cannot be written to standard output ({error})"))
-        })?,
+        None => std::io::stdout()
+            .write_all(&answer)
+            .map_err(|error| Failure::Failed(format!("the answer cannot be written to standard output ({error})")))?,
     }
     Talk::beside(args.output.is_none()).report("points", &measured.report);
     Ok(())

@@ -25,12 +25,12 @@ pub(crate) fn run(args: &PlanArgs, cancel: &CancelToken) -> Result<(), Failure> 
 }
 
 fn summary(plan: &BakePlan, warnings: &[String]) -> serde_json::Value {
-    let effects = plan.effects.iter().map(|effect| {
-        json!({ "effect": effect.effect.to_string(), "on": effect.on, "reason": effect.reason })
-    });
-    let predicted = plan.predicted.iter().map(|prediction| {
-        json!({ "error": prediction.error, "seconds": prediction.seconds })
-    });
+    let effects = plan
+        .effects
+        .iter()
+        .map(|effect| json!({ "effect": effect.effect.to_string(), "on": effect.on, "reason": effect.reason }));
+    let predicted =
+        plan.predicted.iter().map(|prediction| json!({ "error": prediction.error, "seconds": prediction.seconds }));
     json!({
         "effects": effects.collect::<Vec<_>>(),
         "texels": plan.texels,

@@ -1,7 +1,9 @@
 //! A bake on threads of its own while the game runs on: asked for by triggers, started from a snapshot at the end
 //! of the frame, looked after once per frame.
 
-use super::events::{BakeFailed, BakeFinished, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps, LightmapFormat};
+use super::events::{
+    BakeFailed, BakeFinished, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps, LightmapFormat,
+};
 use super::extract::extract_scene;
 use super::write_back::{Finished, clear, write_back};
 use crate::artefact::StableId;
@@ -123,12 +125,8 @@ pub(super) fn look_after(world: &mut World) {
 fn finish(world: &mut World, job: &Job, lightmap: Arc<Lightmap>, mut warnings: Vec<String>) {
     let report = &lightmap.report;
     warnings.extend(report.warnings.iter().map(ToString::to_string));
-    let finished = Finished {
-        lightmap: &lightmap,
-        entities: &job.entities,
-        ambient_baked: job.ambient_baked,
-        format: job.format,
-    };
+    let finished =
+        Finished { lightmap: &lightmap, entities: &job.entities, ambient_baked: job.ambient_baked, format: job.format };
     let written = write_back(world, &finished);
     warnings.extend(written.warnings);
     world.trigger(BakeFinished {

@@ -105,6 +105,9 @@ fn find_jobs(
     let Some(folder) = world.get_resource::<Assets<BakedFolder>>().and_then(|folders| folders.get(folder)) else {
         return Vec::new();
     };
+    if applied.done.len() >= folder.manifest.placements.len() + folder.manifest.baked_lights.len() {
+        return Vec::new();
+    }
     let placements: HashMap<&StableId, Lightmap> = folder
         .manifest
         .placements

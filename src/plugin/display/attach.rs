@@ -103,7 +103,8 @@ fn check(world: &World, entity: Entity) -> Result<(), CannotAttach> {
     let (Some(mesh), true) = (entity.get::<Mesh3d>(), entity.contains::<MeshMaterial3d<StandardMaterial>>()) else {
         return Err(CannotAttach::NoStandardMaterial);
     };
-    if entity.contains::<bevy::mesh::skinning::SkinnedMesh>() || entity.contains::<bevy::mesh::morph::MeshMorphWeights>()
+    if entity.contains::<bevy::mesh::skinning::SkinnedMesh>()
+        || entity.contains::<bevy::mesh::morph::MeshMorphWeights>()
     {
         return Err(CannotAttach::Deformed);
     }

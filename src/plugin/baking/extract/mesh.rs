@@ -1,6 +1,6 @@
 //! `Mesh3d` into meshes and instances.
 
-use super::{ExtractionWarning, Extraction, Thing, material};
+use super::{Extraction, ExtractionWarning, Thing, material};
 use crate::plugin::baking::SceneSettings;
 use crate::scene::{self, Instance, LightmapRequest, Topology};
 use bevy::mesh::morph::MeshMorphWeights;

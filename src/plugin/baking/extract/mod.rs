@@ -83,9 +83,9 @@ impl Thing {
 /// Orders things by id and makes the ids unique.
 fn name_all(world: &World, mut things: Vec<Thing>, out: &mut Extraction) -> Vec<Thing> {
     things.sort_by_cached_key(|thing| {
-        let place = world.get::<GlobalTransform>(thing.entity).map_or([0; 16], |transform| {
-            transform.to_matrix().to_cols_array().map(f32::to_bits)
-        });
+        let place = world
+            .get::<GlobalTransform>(thing.entity)
+            .map_or([0; 16], |transform| transform.to_matrix().to_cols_array().map(f32::to_bits));
         (thing.id.clone(), matches!(thing.kind, Kind::RectLight), place, thing.entity)
     });
     for twins in things.chunk_by(|a, b| a.id == b.id).filter(|twins| twins.len() > 1) {
