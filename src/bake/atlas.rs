@@ -114,7 +114,7 @@ fn packed_size(
     }
     let texels = (squared_stretch / area * density * density).map(f64::sqrt).map(|texels| texels.ceil().max(2.0));
     let limit = MAX_PACKED_SIZE - 2 * GUTTER;
-    if !(texels.max_element() <= f64::from(limit)) {
+    if texels.is_nan() || texels.max_element() > f64::from(limit) {
         return Err(BakeError::AtlasOverflow {
             name: instance.name.clone(),
             width: texels.x as u64,
@@ -125,8 +125,11 @@ fn packed_size(
     Ok([texels.x as u32, texels.y as u32])
 }
 
+/// A page, and a rectangle's smallest corner on it [texels].
+type Place = (u32, [u32; 2]);
+
 /// Packs rectangles, in order of id, into as few and as small pages as shelves allow.
-fn pack(sizes: &[[u32; 2]]) -> (Vec<[u32; 2]>, Vec<(u32, [u32; 2])>) {
+fn pack(sizes: &[[u32; 2]]) -> (Vec<[u32; 2]>, Vec<Place>) {
     let mut order: Vec<usize> = (0..sizes.len()).collect();
     order.sort_by_key(|&index| (std::cmp::Reverse(sizes[index][1]), std::cmp::Reverse(sizes[index][0]), index));
     let mut pages = Vec::new();

@@ -5,8 +5,8 @@
 //! runs' means are independent and equally distributed, and their spread is the standard error (Owen 1997).
 
 use super::{CancelToken, RelativeError};
-use crate::math::luminance;
 use crate::math::combine;
+use crate::math::luminance;
 use crate::trace::Sobol;
 use glam::{DVec3, Vec3};
 

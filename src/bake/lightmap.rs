@@ -160,10 +160,8 @@ pub(super) fn sites(
             sites.push(Site { page, index, texel, key });
         }
     }
-    let warnings = overlapping
-        .into_iter()
-        .map(|(subject, texels)| BakeWarning::OverlappingUv1 { subject, texels })
-        .collect();
+    let warnings =
+        overlapping.into_iter().map(|(subject, texels)| BakeWarning::OverlappingUv1 { subject, texels }).collect();
     (sites, warnings)
 }
 

@@ -99,7 +99,8 @@ impl Texel {
     /// A point of the covered part, uniform over its area in the texel.
     pub(super) fn start(&self, tracer: &Tracer, u: Vec2) -> PathStart {
         let place = f64::from(u.x) * self.coverage;
-        let patch = &self.patches[self.patches.partition_point(|patch| patch.share_end <= place).min(self.patches.len() - 1)];
+        let patch =
+            &self.patches[self.patches.partition_point(|patch| patch.share_end <= place).min(self.patches.len() - 1)];
         let within = (place - (patch.share_end - patch.share)) / patch.share;
         let u = Vec2::new((within as f32).clamp(0.0, 1.0 - f32::EPSILON * 0.5), u.y);
         let weights = match patch.shape {

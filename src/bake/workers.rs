@@ -62,8 +62,7 @@ impl<'a> Workers<'a> {
         let tally = Mutex::new(Tally::default());
         let chunk_of = |chunk: &[I]| -> Option<Vec<T>> {
             let clock = ThreadTime::now();
-            let results: Vec<T> =
-                chunk.iter().map(|item| work(item, self.cancel)).collect::<Option<Vec<T>>>()?;
+            let results: Vec<T> = chunk.iter().map(|item| work(item, self.cancel)).collect::<Option<Vec<T>>>()?;
             self.tell(&tally, items.len(), &results, clock.elapsed(), &error);
             Some(results)
         };
@@ -103,11 +102,6 @@ impl<'a> Workers<'a> {
             tally.error_count += 1;
         }
         let relative_stderr = (tally.error_count > 0).then(|| tally.error_sum / tally.error_count as f64);
-        self.progress.report(Progress {
-            stage: Stage::Gather,
-            done: tally.done,
-            total: total as u64,
-            relative_stderr,
-        });
+        self.progress.report(Progress { stage: Stage::Gather, done: tally.done, total: total as u64, relative_stderr });
     }
 }

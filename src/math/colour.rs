@@ -12,6 +12,7 @@ pub fn luminance(colour: impl Into<DVec3>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
 
     #[test]
     fn white_is_one_and_green_weighs_most() {

@@ -4,22 +4,28 @@
 //! the tree's slab test rounds and its inverse directions are clamped: without the padding a ray can miss a box
 //! whose triangle it hits. Triangles lie in world space: a static bake needs no instance transforms, and a second
 //! rounding on the way down would break watertightness between neighbours.
+//!
+//! The tree drops every box that a ray leaves within 10⁻⁴ of its origin, a length that knows nothing of the scene: in
+//! metres, light would leave a closed room through its corners. All lengths in here are therefore scaled by a power
+//! of two, which rounds nothing, that makes the scene 2³⁰ units large and the dropped length a trillionth of it.
 
-use super::triangle::{Crossing, ShearedRay};
+use super::triangle::{Crossing, ShearedRay, plane_distance};
 use glam::Vec3;
+use obvhs::Boundable;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::builder::build_cwbvh;
 use obvhs::ray::{Ray, RayHit};
-use obvhs::Boundable;
 use std::time::Duration;
 
 /// A tree over world-space triangles.
 pub(super) struct Accel {
     tree: Option<CwBvh>,
-    /// In the tree's order: each triangle and the number under which the caller knows it.
+    /// In the tree's order and units: each triangle and the number under which the caller knows it.
     triangles: Vec<([Vec3; 3], u32)>,
+    /// The tree's units per metre: a power of two.
+    scale: f32,
 }
 
 /// What a ray met.
@@ -27,7 +33,7 @@ pub(super) struct Accel {
 pub(super) struct Hit {
     /// The caller's number of the triangle.
     pub(super) triangle: u32,
-    /// Distance, in lengths of the ray's direction.
+    /// Distance [m].
     pub(super) t: f32,
     /// Weights of the triangle's second and third vertex.
     pub(super) barycentric: [f32; 2],
@@ -45,10 +51,12 @@ impl Accel {
     /// Builds a tree. All vertices must be finite.
     pub(super) fn new(triangles: &[[Vec3; 3]]) -> Self {
         let reach = triangles.iter().flatten().fold(0.0_f32, |reach, vertex| reach.max(vertex.abs().max_element()));
-        // The slab test's distances carry a relative error of a few units in the last place, that is, of the
-        // distance between origin and box, which `2·reach` bounds. Four such units: with two, rays aimed at
-        // vertices of a sphere at ten times its radius from the origin slip by; more only cost speed.
-        let padding = 4.0 * f32::EPSILON * reach;
+        // The tree's slab test is off by a few units in the last place of the distance between origin and box, and
+        // takes direction components below ε as ε, so that a ray in the plane of a flat box leaves it after
+        // padding/ε. Four units make that 4·reach, farther than two points of the scene can be apart (2√3·reach).
+        let scale = scale_for(reach);
+        let padding = 4.0 * f32::EPSILON * reach * scale;
+        let triangles: Vec<[Vec3; 3]> = triangles.iter().map(|corners| corners.map(|vertex| vertex * scale)).collect();
         let boxes: Vec<Padded> = triangles
             .iter()
             .map(|[a, b, c]| {
@@ -58,32 +66,36 @@ impl Accel {
             })
             .collect();
         if boxes.is_empty() {
-            return Self { tree: None, triangles: Vec::new() };
+            return Self { tree: None, triangles: Vec::new(), scale };
         }
         let mut tree = build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
-        let triangles =
-            tree.primitive_indices.iter().map(|&index| (triangles[index as usize], index)).collect();
+        let triangles = tree.primitive_indices.iter().map(|&index| (triangles[index as usize], index)).collect();
         tree.primitive_indices = Vec::new();
-        Self { tree: Some(tree), triangles }
+        Self { tree: Some(tree), triangles, scale }
     }
 
     /// The nearest triangle that the ray meets before `t_max`, from either side. The direction is a unit vector.
     pub(super) fn closest(&self, origin: Vec3, direction: Vec3, t_max: f32) -> Option<Hit> {
         let tree = self.tree.as_ref()?;
+        let (origin, t_max) = (origin * self.scale, t_max * self.scale);
         let sheared = ShearedRay::new(origin, direction);
-        let ray = Ray::new(origin.to_array().into(), direction.to_array().into(), 0.0, t_max);
+        let start = End { position: origin, inwards: direction };
+        let ray = tree_ray(origin, direction, t_max);
         let mut nearest = RayHit::none();
         let mut winner: Option<Crossing> = None;
-        tree.ray_traverse(ray, &mut nearest, |ray, index| match sheared.cross(&self.triangles[index].0) {
-            Some(crossing) if crossing.t > crossing.t_error && crossing.t < ray.tmax => {
-                winner = Some(crossing);
-                crossing.t
+        tree.ray_traverse(ray, &mut nearest, |ray, index| {
+            let triangle = &self.triangles[index].0;
+            match sheared.cross(triangle) {
+                Some(crossing) if crossing.t < ray.tmax && start.is_behind(crossing.t, crossing.t_error, triangle) => {
+                    winner = Some(crossing);
+                    crossing.t
+                }
+                _ => f32::INFINITY,
             }
-            _ => f32::INFINITY,
         });
         winner.map(|crossing| Hit {
             triangle: self.triangles[nearest.primitive_id as usize].1,
-            t: crossing.t,
+            t: crossing.t / self.scale,
             barycentric: crossing.barycentric,
         })
     }
@@ -93,18 +105,64 @@ impl Accel {
         let Some(tree) = &self.tree else {
             return false;
         };
+        let (origin, target) = (origin * self.scale, target * self.scale);
         let offset = target - origin;
         let distance = offset.length();
-        if !(distance > 0.0) {
+        if distance.is_nan() || distance == 0.0 {
             return false;
         }
         let direction = offset / distance;
         let sheared = ShearedRay::new(origin, direction);
-        let ray = Ray::new(origin.to_array().into(), direction.to_array().into(), 0.0, distance);
-        let end = distance * (1.0 - 4.0 * f32::EPSILON);
-        !tree.ray_traverse_miss(ray, |_, index| match sheared.cross(&self.triangles[index].0) {
-            Some(crossing) if crossing.t > crossing.t_error && crossing.t + crossing.t_error < end => crossing.t,
-            _ => f32::INFINITY,
+        let ray = tree_ray(origin, direction, distance);
+        let start = End { position: origin, inwards: direction };
+        let end = End { position: target, inwards: -direction };
+        !tree.ray_traverse_miss(ray, |_, index| {
+            let triangle = &self.triangles[index].0;
+            match sheared.cross(triangle) {
+                Some(crossing)
+                    if start.is_behind(crossing.t, crossing.t_error, triangle)
+                        && end.is_behind(
+                            distance - crossing.t,
+                            crossing.t_error + 4.0 * f32::EPSILON * distance,
+                            triangle,
+                        ) =>
+                {
+                    // The tree asks for a distance below the ray's end, which rounding could deny.
+                    crossing.t.min(0.5 * distance)
+                }
+                _ => f32::INFINITY,
+            }
         })
     }
+}
+
+/// A ray's one end, and the unit direction from there along the ray.
+#[derive(Clone, Copy)]
+struct End {
+    position: Vec3,
+    inwards: Vec3,
+}
+
+impl End {
+    /// Whether something that is computed to lie `t` from this end, give or take `error`, lies on the ray's side.
+    #[inline]
+    fn is_behind(&self, t: f32, error: f32, triangle: &[Vec3; 3]) -> bool {
+        t > error || (t >= -error && plane_distance(self.position, self.inwards, triangle) > 0.0)
+    }
+}
+
+/// The power of two that makes a scene of this reach about 2³⁰ units large.
+fn scale_for(reach: f32) -> f32 {
+    // The exponent's bits; limits keep the scale and its reciprocal normal numbers.
+    let exponent = (reach.to_bits() >> 23) as i32 - 127;
+    2.0_f32.powi((30 - exponent).clamp(-90, 120))
+}
+
+/// A ray as the tree wants it.
+#[inline]
+fn tree_ray(origin: Vec3, direction: Vec3, t_max: f32) -> Ray {
+    // The tree takes −0 for negative when it inverts and for positive when it picks near planes, and then misses
+    // everything; −0 + 0 is +0.
+    let direction = direction + Vec3::ZERO;
+    Ray::new(origin.to_array().into(), direction.to_array().into(), 0.0, t_max)
 }

@@ -12,7 +12,7 @@ const MAX_STEPS: u32 = 1000;
 impl Tracer {
     /// Whether none of `walks` light paths from the sources leaves the scene.
     pub(crate) fn is_closed(&self, walks: u64, seed: u64) -> bool {
-        let key = combine(seed, 0xc105_ed);
+        let key = combine(seed, 0x636c_6f73_6564);
         !self.emitters.is_empty() && (0..walks).all(|walk| self.stays_inside(&Sobol::new(key, walk)))
     }
 

@@ -20,8 +20,7 @@ impl Compiled {
     pub(crate) fn new(scene: &Scene) -> Self {
         let faults = scene.validate();
         let sound = Sound::new(scene, &faults);
-        let mut world = World::default();
-        world.surfaces = scene
+        let surfaces = scene
             .materials
             .iter()
             .map(|material| Surface {
@@ -30,6 +29,7 @@ impl Compiled {
                 double_sided: material.double_sided,
             })
             .collect();
+        let mut world = World { surfaces, ..World::default() };
         let mut instances: Vec<usize> = (0..scene.instances.len()).filter(|&index| sound.instances[index]).collect();
         instances.sort_by(|&a, &b| scene.instances[a].id.cmp(&scene.instances[b].id));
         for index in instances {
@@ -122,8 +122,7 @@ impl World {
     fn add_emitters(&mut self, first: usize, surface: Surface) {
         let mut index = first;
         while index < self.triangles.len() {
-            let mut emitter =
-                Emitter::triangle(&self.triangles[index], surface.emitted_radiance, surface.double_sided);
+            let mut emitter = Emitter::triangle(&self.triangles[index], surface.emitted_radiance, surface.double_sided);
             let number = self.emitters.len() as u32;
             self.emitter_of[index] = number;
             if let Some(next) = self.triangles.get(index + 1)

@@ -18,5 +18,6 @@ mod triangle;
 pub(crate) use compile::Compiled;
 pub(crate) use path::PathStart;
 pub(crate) use sampler::{Dimensions, Sampler, Sobol};
-pub(crate) use tracer::{Receiver, Tracer};
+pub(crate) use tracer::Receiver;
+pub use tracer::{RayHit, Tracer};
 pub use transport::{Estimator, Transport};

@@ -39,12 +39,7 @@ impl PathStart {
     /// A start on a triangle, on the side of `normal`.
     pub(super) fn new(triangle: &TriangleShape, position: Vec3, normal: Vec3) -> Self {
         let side = if triangle.normal.dot(normal) < 0.0 { -1.0 } else { 1.0 };
-        Self {
-            position,
-            origin: triangle.leave(position, normal),
-            normal,
-            geometric_normal: side * triangle.normal,
-        }
+        Self { position, origin: triangle.leave(position, normal), normal, geometric_normal: side * triangle.normal }
     }
 
     /// Where rays start [m].
@@ -94,7 +89,8 @@ impl Tracer {
             throughput *= scattered.weight;
             *rays += 1;
             let hit = self.accel.closest(vertex.origin, wi, f32::INFINITY);
-            let weigh = |emitter, distance| self.emission_weight(emitter, &vertex, wi, distance, scattered.pdf, transport);
+            let weigh =
+                |emitter, distance| self.emission_weight(emitter, &vertex, wi, distance, scattered.pdf, transport);
             let end = hit.map_or(f32::INFINITY, |hit| hit.t);
             for (emitter, distance) in self.emitters.passed(vertex.origin, wi, end) {
                 let emitted = self.emitters.get(emitter).radiance_towards(vertex.position, wi);

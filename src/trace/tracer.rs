@@ -1,9 +1,11 @@
 //! A scene compiled for rays.
 
 use super::accel::Accel;
+use super::compile::Compiled;
 use super::light::Emitters;
 use super::path::PathStart;
 use super::surface::TriangleShape;
+use crate::scene::Scene;
 use glam::{DVec3, Vec3};
 
 /// No emitter.
@@ -18,7 +20,7 @@ pub(super) struct Surface {
 }
 
 /// A scene compiled for rays. Independent of the order in which the scene lists its parts.
-pub(crate) struct Tracer {
+pub struct Tracer {
     pub(super) accel: Accel,
     pub(super) triangles: Vec<TriangleShape>,
     /// Per triangle, index into `surfaces`.
@@ -31,6 +33,15 @@ pub(crate) struct Tracer {
     /// Length of the diagonal of the scene's bounds [m].
     pub(super) extent: f32,
     pub(super) receivers: Vec<Receiver>,
+}
+
+/// What a ray meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayHit {
+    /// Distance from the ray's origin [m].
+    pub distance: f32,
+    /// Unit normal of the surface's front.
+    pub normal: Vec3,
 }
 
 /// A placed mesh that asks for a lightmap.
@@ -47,6 +58,22 @@ pub(crate) struct Receiver {
 }
 
 impl Tracer {
+    /// Compiles what is sound in a scene; [`Scene::validate`] tells what is not.
+    pub fn new(scene: &Scene) -> Self {
+        Compiled::new(scene).tracer
+    }
+
+    /// The nearest surface that a ray from `origin` [m] in the unit `direction` meets, from either side.
+    pub fn closest_hit(&self, origin: Vec3, direction: Vec3) -> Option<RayHit> {
+        let hit = self.accel.closest(origin, direction, f32::INFINITY)?;
+        Some(RayHit { distance: hit.t, normal: self.normal(hit.triangle) })
+    }
+
+    /// Whether no surface lies between two points [m].
+    pub fn is_visible(&self, from: Vec3, to: Vec3) -> bool {
+        !self.accel.is_blocked(from, to)
+    }
+
     /// Objects that ask for a lightmap and can have one, ordered by id.
     pub(crate) fn receivers(&self) -> &[Receiver] {
         &self.receivers

@@ -6,7 +6,9 @@
 //! evaluated again in f64, in which its products are exact.
 //!
 //! The distance comes with a bound on its own error (Pharr, Jakob and Humphreys 2023, § 6.8.4, whose derivation
-//! this follows): a hit nearer than the bound may be the surface that the ray left, and is no hit.
+//! this follows). A hit nearer to either end of the ray than the bound may be the surface that the ray left or the
+//! source that it goes to; which side of the triangle's plane that end lies on then decides, in f64. To drop such
+//! hits instead, as is often done, lets light out of closed corners: a furnace of albedo 0.99 lost 0.17 % by it.
 
 use glam::Vec3;
 
@@ -54,11 +56,7 @@ impl ShearedRay {
         let (x, y) = ([1, 2, 0][z], [2, 0, 1][z]);
         let direction = direction.to_array();
         let scale = 1.0 / direction[z];
-        Self {
-            origin: origin.to_array(),
-            axes: [x, y, z],
-            shear: [direction[x] * scale, direction[y] * scale, scale],
-        }
+        Self { origin: origin.to_array(), axes: [x, y, z], shear: [direction[x] * scale, direction[y] * scale, scale] }
     }
 
     /// Crosses the ray's line with a triangle, from either side. `None` if the line passes beside it.
@@ -92,8 +90,7 @@ impl ShearedRay {
         let (x_error, y_error, z_error) =
             (gamma(5.0) * (max_x + max_z), gamma(5.0) * (max_y + max_z), gamma(3.0) * max_z);
         let edge_error = 2.0 * (gamma(2.0) * max_x * max_y + y_error * max_x + x_error * max_y);
-        let t_error =
-            3.0 * (gamma(3.0) * max_edge * max_z + edge_error * max_z + z_error * max_edge) * inverse.abs();
+        let t_error = 3.0 * (gamma(3.0) * max_edge * max_z + edge_error * max_z + z_error * max_edge) * inverse.abs();
         t.is_finite().then_some(Crossing { t, t_error, barycentric: [v * inverse, w * inverse] })
     }
 
@@ -108,6 +105,14 @@ impl ShearedRay {
             along,
         ]
     }
+}
+
+/// Distance from `origin` along the unit `direction` to the triangle's plane, in f64.
+#[cold]
+pub(super) fn plane_distance(origin: Vec3, direction: Vec3, [a, b, c]: &[Vec3; 3]) -> f64 {
+    let [a, b, c] = [a, b, c].map(|vertex| vertex.as_dvec3());
+    let normal = (b - a).cross(c - a);
+    normal.dot(a - origin.as_dvec3()) / normal.dot(direction.as_dvec3())
 }
 
 /// a·b − c·d, rounded as plain arithmetic does, so that (a, b, c, d) and (c, d, a, b) give opposite values.

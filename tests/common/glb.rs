@@ -52,7 +52,8 @@ pub fn parse(bytes: &[u8]) -> Scene {
 }
 
 fn material(json: &Value) -> Material {
-    let colour = |value: &Value| Vec3::from_array([0, 1, 2].map(|channel| value[channel].as_f64().unwrap_or(0.0) as f32));
+    let colour =
+        |value: &Value| Vec3::from_array([0, 1, 2].map(|channel| value[channel].as_f64().unwrap_or(0.0) as f32));
     let strength = json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"].as_f64().unwrap_or(1.0);
     Material {
         name: json["name"].as_str().unwrap().to_owned(),

@@ -28,9 +28,5 @@ fn row(line: &str) -> Reference {
     let values: Vec<f64> = line.split(',').map(|value| value.parse().unwrap()).collect();
     let vector = |at: usize| DVec3::from_slice(&values[at..at + 3]);
     let position: Vec3 = vector(0).as_vec3();
-    Reference {
-        point: MeterPoint { position, normal: vector(3).as_vec3() },
-        irradiance: vector(6),
-        stderr: vector(9),
-    }
+    Reference { point: MeterPoint { position, normal: vector(3).as_vec3() }, irradiance: vector(6), stderr: vector(9) }
 }

@@ -3,7 +3,7 @@
 
 use super::super::testing::{ChiSquared, Domain, Random, integrate};
 use super::super::*;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 use std::f64::consts::{PI, TAU};
 
 /// A rectangle of 0.7 × 0.4, tilted so that no axis is spared.
@@ -227,4 +227,85 @@ fn what_cannot_be_sampled_by_solid_angle_is_refused() {
     assert_eq!(triangle(Vec3::NAN, Vec3::X, Vec3::Y), None);
     let touching = 1e-7 * Vec3::Z;
     assert_eq!(triangle(touching - Vec3::X - Vec3::Y, touching + Vec3::X - Vec3::Y, touching + Vec3::Y), None);
+}
+
+/// A point of view (heights are powers of two) and what 60 digits say of it: the solid angle, and where the point (¼, ¾) of the square goes.
+type Exact = ([f32; 3], f64, [f64; 2]);
+
+/// The unit square in the plane z = 0.
+const RECTANGLES: [Exact; 7] = [
+    ([0.5, 0.5, 10_000.0], 9.999_999_975e-9, [0.250_000_000_234, 0.749_999_999_766]),
+    ([1.5, 0.5, 9.536_743e-7], 1.373_752_628_260_498_5e-6, [0.600_546_280_026, 0.725_256_056_227]),
+    ([1000.0, 0.25, 9.765_625e-4], 9.780_290_851_598_52e-13, [0.250_281_507_969, 0.749_999_906_203]),
+    ([-9.765_625e-4, 0.5, 6.103_515_6e-5], 0.124_564_954_133_981_67, [0.000_325_313_798_249, 0.500_752_460_807]),
+    ([0.5, 0.25, 2.441_406_3e-4], 6.279_827_965_740_634, [0.499_756_064_076, 0.250_199_256_519]),
+    ([3.0, -2.0, 9.313_226e-10], 2.173_625_228_654_955_5e-11, [0.312_993_536_213, 0.693_369_296_322]),
+    ([0.25, 0.75, 1.0], 0.719_205_273_031_060_1, [0.220_201_557_515, 0.781_898_708_425]),
+];
+
+/// The triangle (0, 0), (1, 0), (¼, 1) in the plane z = 0; the weights of its second and third corner.
+const TRIANGLES: [Exact; 7] = [
+    ([0.5, 0.5, 10_000.0], 4.999_999_989_843_75e-9, [0.133_974_596_291, 0.216_506_351_301]),
+    ([1.5, 0.5, 9.536_743e-7], 4.152_308_059_482_445e-7, [0.254_733_505_669, 0.238_009_082_873]),
+    ([1000.0, 0.25, 9.765_625e-4], 4.888_921_972_235_249e-13, [0.134_083_461_683, 0.216_519_721_879]),
+    ([-9.765_625e-4, 0.5, 6.103_515_6e-5], 6.993_102_802_293_794e-4, [0.021_333_999_403_4, 0.374_218_514_945]),
+    ([0.5, 0.25, 2.441_406_3e-4], 6.278_778_843_522_815, [0.437_244_805_705, 0.249_870_981_752]),
+    ([3.0, -2.0, 9.313_226e-10], 1.135_974_036_002_332e-11, [0.168_503_787_27, 0.189_425_324_062]),
+    ([0.25, 0.75, 1.0], 0.356_351_557_935_519_64, [0.115_384_819_421, 0.279_505_975_479]),
+];
+
+#[test]
+fn hard_points_of_view_against_sixty_digits() {
+    let s = Vec2::new(0.25, 0.75);
+    for (from, solid_angle, place) in RECTANGLES {
+        let seen = SphericalRectangle::new(Vec3::ZERO, Vec3::X, Vec3::Y, from.into()).expect("it is seen");
+        assert!((seen.solid_angle() / solid_angle - 1.0).abs() < 1e-10, "{from:?}: {}", seen.solid_angle());
+        let found = seen.sample_shares(s);
+        assert!((found.as_dvec2() - DVec2::from(place)).abs().max_element() < 1e-7, "{from:?}: {found}");
+    }
+    for (from, solid_angle, place) in TRIANGLES {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::new(0.25, 1.0, 0.0)];
+        let seen = SphericalTriangle::new(corners, from.into()).expect("it is seen");
+        assert!((seen.solid_angle() / solid_angle - 1.0).abs() < 1e-10, "{from:?}: {}", seen.solid_angle());
+        let found = seen.sample_weights(s);
+        assert!((found.as_dvec2() - DVec2::from(place)).abs().max_element() < 1e-7, "{from:?}: {found}");
+    }
+}
+
+#[test]
+fn no_point_of_view_gives_what_is_no_number() {
+    let mut random = Random::new(29);
+    let (mut quads, mut triangles) = (0, 0);
+    for _ in 0..100_000 {
+        let mut power = |low: f32, high: f32| 10_f32.powf(low + (high - low) * random.unit());
+        let (width, height) = (power(-3.0, 3.0), power(-3.0, 3.0));
+        let (distance, elevation) = (power(-6.0, 5.0), power(-12.0, 1.0));
+        let mut towards = random.direction();
+        towards.z *= elevation;
+        let near = random.square() * Vec2::new(width, height);
+        // Every fourth on a line through an edge, where differences vanish.
+        let near = if random.bits() & 3 == 0 { Vec2::new(near.x, 0.0) } else { near };
+        let from = near.extend(0.0) + distance * towards;
+        let (u, v, s) = (width * Vec3::X, height * Vec3::Y, random.square());
+        let ends = [Vec2::ZERO, Vec2::splat(1.0 - f32::EPSILON / 2.0), s];
+        if let Some(seen) = SphericalRectangle::new(Vec3::ZERO, u, v, from) {
+            quads += 1;
+            assert!(seen.solid_angle() > 0.0 && seen.solid_angle() < TAU, "{from}");
+            for s in ends {
+                let shares = seen.sample_shares(s);
+                assert!(shares.min_element() >= 0.0 && shares.max_element() <= 1.0, "{from}, {s}: {shares}");
+                assert!(seen.sample_offset(s).is_finite() && seen.square_from_shares(shares).is_finite());
+            }
+        }
+        if let Some(seen) = SphericalTriangle::new([Vec3::ZERO, u, v + 0.3 * u], from) {
+            triangles += 1;
+            assert!(seen.solid_angle() > 0.0 && seen.solid_angle() < TAU, "{from}");
+            for s in ends {
+                let weights = seen.sample_weights(s);
+                assert!(weights.min_element() >= 0.0 && weights.element_sum() <= 1.000_000_2, "{from}, {s}: {weights}");
+                assert!(seen.sample_offset(s).is_finite() && seen.square_from_weights(weights).is_finite());
+            }
+        }
+    }
+    assert!(quads > 50_000 && triangles > 50_000, "{quads}, {triangles}");
 }

@@ -1,8 +1,8 @@
 //! Which source to aim at: in proportion to its power.
 
 use super::{Emitter, LightSample};
-use crate::math::luminance;
 use crate::math::Discrete;
+use crate::math::luminance;
 use glam::{Vec2, Vec3};
 
 /// All sources of a scene.
