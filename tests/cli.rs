@@ -184,6 +184,36 @@ fn a_light_without_area_is_named_and_leaves_the_scene_dark() {
 }
 
 #[test]
+fn a_scene_of_bevys_own_kind_is_read_and_its_light_without_area_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("lamp.scn.ron");
+    let measure = |width: &str| {
+        let lamp = r#"(resources: {}, entities: { 4294967295: (components: {
+            "bevy_ecs::name::Name": "lamp",
+            "bevy_transform::components::transform::Transform":
+                (translation: (0.0, 0.5, 0.0), rotation: (-0.70710677, 0.0, 0.0, 0.70710677), scale: (1.0, 1.0, 1.0)),
+            "bevy_light::rect_light::RectLight": (
+                color: LinearRgba((red: 1.0, green: 1.0, blue: 1.0, alpha: 1.0)),
+                intensity: 100.0, range: 20.0, width: WIDTH, height: 1.0),
+        }) })"#;
+        std::fs::write(&scene, lamp.replace("WIDTH", width)).unwrap();
+        let points = folder.path().join("points.csv");
+        std::fs::write(&points, "x,y,z,nx,ny,nz\n0,0,0,0,1,0\n").unwrap();
+        let mut command = kiln();
+        command.arg("irradiance").arg(&scene).arg("--points").arg(&points).arg("--no-range");
+        command.args(["--spp", "4096"]).output().unwrap()
+    };
+    let output = measure("1.0");
+    let stdout = text(&output.stdout);
+    let row: Vec<f64> = stdout.lines().nth(1).unwrap().split(',').map(|cell| cell.parse().unwrap()).collect();
+    // A square of radiance 100/π and half-side 1/2 at distance 1/2: E = 4 L · (1/√2) · atan(1/√2) (Lambert).
+    let expected = 400.0 / std::f64::consts::PI * 0.5_f64.sqrt() * 0.5_f64.sqrt().atan();
+    assert!((row[6] - expected).abs() + 4.0 * row[9] <= 0.01 * expected, "{} is not {expected}", row[6]);
+    let output = measure("0.0");
+    assert!(text(&output.stderr).contains("light \"lamp\" has no area"), "{}", text(&output.stderr));
+}
+
+#[test]
 fn a_scene_without_light_is_refused() {
     let (folder, output) = bake_spoilt(|glb| {
         for material in glb.json["materials"].as_array_mut().unwrap() {
