@@ -134,6 +134,26 @@ fn a_plan_has_the_shape_that_the_contract_says() {
 }
 
 #[test]
+fn the_order_of_meshes_and_nodes_in_the_file_does_not_matter() {
+    let (folder, output) = bake_spoilt(|_| {});
+    let (shuffled_folder, shuffled) = bake_spoilt(|glb| {
+        let meshes = glb.json["meshes"].as_array_mut().unwrap();
+        meshes.reverse();
+        let last = meshes.len() as u64 - 1;
+        for node in glb.json["nodes"].as_array_mut().unwrap() {
+            if let Some(mesh) = node["mesh"].as_u64() {
+                node["mesh"] = (last - mesh).into();
+            }
+        }
+        glb.json["scenes"][0]["nodes"].as_array_mut().unwrap().reverse();
+    });
+    assert!(output.status.success() && shuffled.status.success(), "{}", text(&shuffled.stderr));
+    let texture = |folder: &TempDir| std::fs::read(folder.path().join("out/lightmap_0.ktx2")).unwrap();
+    assert!(texture(&folder) == texture(&shuffled_folder));
+    assert_eq!(last_json(&output)["rays"], last_json(&shuffled)["rays"]);
+}
+
+#[test]
 fn scenes_that_cannot_be_opened() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");

@@ -67,6 +67,7 @@ pub(crate) fn detach(world: &mut World, entity: Entity) {
 }
 
 /// The lightmap that an entity has or will have in a few frames.
+#[cfg(feature = "bake")]
 pub(crate) fn attached(world: &World, entity: Entity) -> Option<Lightmap> {
     let pending = world.get::<PendingLightmap>(entity).map(|pending| pending.lightmap.clone());
     pending.or_else(|| world.get::<Lightmap>(entity).cloned())
