@@ -10,3 +10,16 @@ pub mod output;
 pub mod scene;
 #[cfg(feature = "bake")]
 pub mod trace;
+#[cfg(feature = "bevy")]
+pub mod plugin;
+
+/// What an app needs by name: `use bevy_kiln::prelude::*`.
+#[cfg(feature = "bevy")]
+pub mod prelude {
+    pub use crate::plugin::{BakedFolder, BakedLightmaps, KilnId, KilnPlugin, KilnSystems};
+    #[cfg(feature = "bake")]
+    pub use crate::plugin::{
+        AmbientMode, BakeFailed, BakeFinished, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps, EmissiveUnit,
+        LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver, RangeWindow, SceneSettings,
+    };
+}

@@ -1,0 +1,199 @@
+//! The command line as data.
+
+use crate::parse;
+use bevy_kiln::output::OutputFormat;
+use bevy_kiln::plugin::EmissiveUnit;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::Vec3;
+use std::num::{NonZeroU32, NonZeroUsize};
+use std::path::PathBuf;
+
+/// Bakes global illumination for Bevy.
+#[derive(Debug, Parser)]
+#[command(name = "kiln", version, about, propagate_version = true)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    /// Bake the lightmaps of a scene into a folder
+    Bake(BakeArgs),
+    /// Say what would be simulated, what not, and why; and what it would cost
+    Plan(PlanArgs),
+    /// Measure the irradiance at given points, as a light meter does
+    Irradiance(IrradianceArgs),
+    /// Take a path-traced picture
+    Render(RenderArgs),
+    /// Join the shards of a bake
+    #[command(hide = true)]
+    Merge(AnythingArgs),
+    /// Say what accuracy costs in time
+    #[command(hide = true)]
+    Study(AnythingArgs),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct AnythingArgs {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    pub(crate) rest: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SceneArgs {
+    /// The scene: a .glb, .gltf or .scn.ron file
+    pub(crate) scene: PathBuf,
+    /// What emission stands for: "nits" (radiance, cd/m²) or "displayed[=EV100]" (as it looks on screen)
+    #[arg(long, value_name = "nits|displayed[=EV100]", default_value = "displayed=9.7", value_parser = parse::emissive)]
+    pub(crate) emissive: EmissiveUnit,
+    /// A sky that is the same in every direction (radiance, cd/m², linear)
+    #[arg(long, value_name = "R,G,B", value_parser = parse::sky, allow_hyphen_values = true)]
+    pub(crate) sky: Option<Vec3>,
+    /// Let lights shine beyond their range
+    #[arg(long)]
+    pub(crate) no_range: bool,
+    /// Cut paths after N bounces, which loses light: 0 is direct light only
+    #[arg(long, value_name = "N|none", default_value = "none", value_parser = parse::max_bounces)]
+    pub(crate) max_bounces: Bounces,
+    /// Which samples estimates of light are made of
+    #[arg(long, value_enum, default_value_t = EstimatorArg::Mis)]
+    pub(crate) estimator: EstimatorArg,
+    /// Changes every random number, and nothing else
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
+    /// Threads that trace [default: all cores]
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+    #[arg(long, hide = true)]
+    pub(crate) environment: Option<String>,
+}
+
+/// A cap on bounces; its own type, as an `Option` would mean an absent argument.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounces(pub(crate) Option<u32>);
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum EstimatorArg {
+    /// Light and surface samples, weighted
+    Mis,
+    /// Points on the sources only
+    Light,
+    /// Directions from the surface only
+    Bsdf,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum LayoutArg {
+    /// Each object has its own rectangle at the asked density
+    Packed,
+    /// TEXCOORD_1 is one atlas for the whole scene
+    Shared,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LayoutArgs {
+    /// Texels per metre of surface
+    #[arg(long, value_name = "TEXELS_PER_METRE", default_value_t = 16.0, allow_hyphen_values = true)]
+    pub(crate) density: f32,
+    /// Where the texels go
+    #[arg(long, value_enum, default_value_t = LayoutArg::Packed)]
+    pub(crate) layout: LayoutArg,
+    /// Width and height of a shared map [texels]
+    #[arg(long, value_name = "N", required_if_eq("layout", "shared"))]
+    pub(crate) size: Option<u32>,
+    /// Paths that start in each texel
+    #[arg(long, value_name = "N", default_value = "256")]
+    pub(crate) spp: NonZeroU32,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct BakeArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// The folder that gets the textures and kiln.ron
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) layout: LayoutArgs,
+    /// How texels are stored: rgb9e5, rgba16f, or exr (rgb9e5 and f32 EXR besides)
+    #[arg(long, value_name = "rgb9e5|rgba16f|exr", default_value_t)]
+    pub(crate) format: OutputFormat,
+    /// End standard output with one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[arg(long, hide = true)]
+    pub(crate) error: Option<String>,
+    #[arg(long, hide = true)]
+    pub(crate) time: Option<String>,
+    #[arg(long, hide = true)]
+    pub(crate) no_denoise: bool,
+    #[arg(long, hide = true)]
+    pub(crate) resume: bool,
+    #[arg(long, hide = true)]
+    pub(crate) shard: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlanArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    #[command(flatten)]
+    pub(crate) layout: LayoutArgs,
+    /// End standard output with one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct IrradianceArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Table of points: columns x,y,z,nx,ny,nz by name, world metres
+    #[arg(long, value_name = "P.csv")]
+    pub(crate) points: PathBuf,
+    /// Where the answer goes [default: standard output]
+    #[arg(short, long, value_name = "OUT.csv")]
+    pub(crate) output: Option<PathBuf>,
+    /// Paths that start from each point
+    #[arg(long, value_name = "N", default_value = "256")]
+    pub(crate) spp: NonZeroU32,
+    #[arg(long, hide = true)]
+    pub(crate) error: Option<String>,
+    #[arg(long, hide = true)]
+    pub(crate) time: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RenderArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// The picture: .png (exposed) or .exr (linear radiance)
+    #[arg(short, long, value_name = "IMG")]
+    pub(crate) output: PathBuf,
+    /// A camera of the scene by name [default: its first]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "target"])]
+    pub(crate) camera: Option<String>,
+    /// Where to look from [m]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::point, allow_hyphen_values = true, requires = "target")]
+    pub(crate) eye: Option<Vec3>,
+    /// Where to look at [m]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::point, allow_hyphen_values = true, requires = "eye")]
+    pub(crate) target: Option<Vec3>,
+    /// Whole vertical opening angle [°]
+    #[arg(long, value_name = "DEG", default_value = "45", value_parser = parse::fov, allow_hyphen_values = true)]
+    pub(crate) fov: f32,
+    /// Width and height [pixels]
+    #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = parse::size)]
+    pub(crate) size: (u32, u32),
+    /// Paths that start in each pixel
+    #[arg(long, value_name = "N", default_value = "256")]
+    pub(crate) spp: NonZeroU32,
+    /// Exposure of a .png: the camera's exposure value at ISO 100
+    #[arg(long, value_name = "EV", default_value_t = 9.7, allow_hyphen_values = true)]
+    pub(crate) ev100: f32,
+    #[arg(long, hide = true)]
+    pub(crate) error: Option<String>,
+    #[arg(long, hide = true)]
+    pub(crate) time: Option<String>,
+}

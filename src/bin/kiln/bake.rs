@@ -1,0 +1,62 @@
+//! `kiln bake`.
+
+use crate::args::BakeArgs;
+use crate::failure::Failure;
+use crate::progress::Show;
+use crate::scene;
+use crate::talk::{Talk, warn};
+use bevy_kiln::bake::{BakePlan, BakeReport, CancelToken, bake_lightmap};
+use bevy_kiln::output::{WrittenLightmap, write_lightmap};
+use serde_json::json;
+
+pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> {
+    let talk = Talk::beside(args.json);
+    let settings = scene::bake_settings(&args.scene, &args.layout)?;
+    if args.output.is_file() {
+        let path = args.output.display();
+        return Err(Failure::Failed(format!("{path} is a file, not a folder; name another folder or move it away")));
+    }
+    let extraction = scene::open(&args.scene, cancel)?;
+    let mut warnings: Vec<String> = extraction.warnings.iter().map(ToString::to_string).collect();
+    warn(&warnings);
+    let plan = BakePlan::for_scene(&extraction.scene, &settings)?;
+    talk.plan(&plan);
+    warn(&plan.warnings.iter().map(ToString::to_string).collect::<Vec<_>>());
+    let show = Show::new();
+    let result = bake_lightmap(&extraction.scene, &settings, &show, cancel);
+    show.end();
+    let lightmap = result?;
+    if cancel.is_cancelled() {
+        return Err(Failure::Stopped);
+    }
+    let name = args.scene.scene.display().to_string();
+    let written = write_lightmap(&lightmap, &name, &args.output, args.format).map_err(Failure::failed)?;
+    let report = &lightmap.report;
+    let planned = |warning: &String| plan.warnings.iter().any(|known| known.to_string() == *warning);
+    let late = report.warnings.iter().chain(&written.warnings).map(ToString::to_string);
+    let (known, late): (Vec<String>, Vec<String>) = late.partition(planned);
+    warn(&late);
+    warnings.extend(known.into_iter().chain(late));
+    talk.report("texels", report);
+    talk.say(format_args!("wrote {} files into {}", written.files.len(), args.output.display()));
+    if args.json {
+        Talk::Out.say(summary(report, &written, &warnings));
+    }
+    Ok(())
+}
+
+fn summary(report: &BakeReport, written: &WrittenLightmap, warnings: &[String]) -> serde_json::Value {
+    let error = &report.relative_stderr;
+    json!({
+        "texels": report.texels,
+        "samples": report.samples,
+        "rays": report.rays,
+        "cpu_seconds": report.cpu_seconds,
+        "wall_seconds": report.wall_seconds,
+        "relative_stderr": { "mean": error.mean, "p95": error.p95, "max": error.max },
+        "energy_balance": report.energy_balance,
+        "clamped": written.clamped,
+        "warnings": warnings,
+        "files": written.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,72 @@
+//! Values of options from text.
+
+use crate::args::Bounces;
+use bevy_kiln::plugin::EmissiveUnit;
+use glam::Vec3;
+
+pub(crate) fn emissive(text: &str) -> Result<EmissiveUnit, String> {
+    let unknown = || "use nits, displayed or displayed=EV100, such as displayed=9.7".to_owned();
+    match text {
+        "nits" => Ok(EmissiveUnit::Nits),
+        "displayed" => Ok(EmissiveUnit::default()),
+        _ => {
+            let ev100 = text.strip_prefix("displayed=").ok_or_else(unknown)?;
+            Ok(EmissiveUnit::AsDisplayed { ev100: finite(ev100).ok_or_else(unknown)? })
+        }
+    }
+}
+
+pub(crate) fn point(text: &str) -> Result<Vec3, String> {
+    let parts: Option<Vec<f32>> = text.split(',').map(|part| finite(part.trim())).collect();
+    match parts.as_deref() {
+        Some(&[x, y, z]) => Ok(Vec3::new(x, y, z)),
+        _ => Err("give three numbers with commas between, such as 1,2.5,-3".to_owned()),
+    }
+}
+
+pub(crate) fn sky(text: &str) -> Result<Vec3, String> {
+    let sky = point(text)?;
+    if sky.min_element() < 0.0 { Err("a sky cannot shine less than 0".to_owned()) } else { Ok(sky) }
+}
+
+pub(crate) fn max_bounces(text: &str) -> Result<Bounces, String> {
+    if text == "none" {
+        return Ok(Bounces(None));
+    }
+    text.parse().map(|bounces| Bounces(Some(bounces))).map_err(|_| "give a whole number, or none for no cap".to_owned())
+}
+
+pub(crate) fn fov(text: &str) -> Result<f32, String> {
+    let degrees = finite(text).filter(|&degrees| degrees > 0.0 && degrees < 180.0);
+    degrees.ok_or_else(|| "give an angle between 0 and 180 degrees".to_owned())
+}
+
+pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
+    let side = |part: &str| part.parse().ok().filter(|side| (1..=16384).contains(side));
+    let sides = text.split_once(['x', 'X', '×']).and_then(|(width, height)| Some((side(width)?, side(height)?)));
+    sides.ok_or_else(|| "give two whole numbers from 1 to 16384, such as 640x480".to_owned())
+}
+
+fn finite(text: &str) -> Option<f32> {
+    text.parse().ok().filter(|number: &f32| number.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_and_what_is_none() {
+        assert_eq!(emissive("displayed=3"), Ok(EmissiveUnit::AsDisplayed { ev100: 3.0 }));
+        assert_eq!(emissive("displayed"), Ok(EmissiveUnit::AsDisplayed { ev100: 9.7 }));
+        assert!(emissive("lux").is_err() && emissive("displayed=nan").is_err());
+        assert_eq!(point("1, -2,3e1"), Ok(Vec3::new(1.0, -2.0, 30.0)));
+        assert!(point("1,2").is_err() && point("1,2,inf").is_err() && sky("0,-1,0").is_err());
+        assert_eq!(max_bounces("none").map(|b| b.0), Ok(None));
+        assert_eq!(max_bounces("0").map(|b| b.0), Ok(Some(0)));
+        assert!(max_bounces("-1").is_err());
+        assert_eq!(size("640x480"), Ok((640, 480)));
+        assert!(size("0x1").is_err() && size("640").is_err());
+        assert!(fov("180").is_err() && fov("45").is_ok());
+    }
+}

@@ -1,0 +1,61 @@
+//! The scene that the arguments ask for, through the plugin's one way in.
+
+use crate::args::{EstimatorArg, LayoutArg, LayoutArgs, SceneArgs};
+use crate::failure::Failure;
+use bevy_kiln::bake::{BakeSettings, CancelToken, Layout};
+use bevy_kiln::plugin::windowless::open_scene;
+use bevy_kiln::plugin::{Extraction, RangeWindow, SceneSettings, extract_scene};
+use bevy_kiln::trace::{Estimator, Transport};
+use glam::Vec3;
+
+/// Loads and reads the scene.
+pub(crate) fn open(args: &SceneArgs, cancel: &CancelToken) -> Result<Extraction, Failure> {
+    let mut app = open_scene(&args.scene).map_err(Failure::failed)?;
+    if cancel.is_cancelled() {
+        return Err(Failure::Stopped);
+    }
+    let settings = SceneSettings {
+        emissive: args.emissive,
+        range: if args.no_range { RangeWindow::Ignore } else { RangeWindow::AsDisplayed },
+        sky_radiance: args.sky.unwrap_or(Vec3::ZERO),
+        ..SceneSettings::default()
+    };
+    Ok(extract_scene(app.world_mut(), &settings))
+}
+
+/// The same for what makes no lightmaps, so that nothing is said about those that cannot be made.
+pub(crate) fn open_without_lightmaps(args: &SceneArgs, cancel: &CancelToken) -> Result<Extraction, Failure> {
+    let mut extraction = open(args, cancel)?;
+    for instance in &mut extraction.scene.instances {
+        instance.lightmap = None;
+    }
+    Ok(extraction)
+}
+
+pub(crate) fn transport(args: &SceneArgs) -> Transport {
+    let estimator = match args.estimator {
+        EstimatorArg::Mis => Estimator::Mis,
+        EstimatorArg::Light => Estimator::Light,
+        EstimatorArg::Bsdf => Estimator::Bsdf,
+    };
+    Transport { estimator, max_bounces: args.max_bounces.0, seed: args.seed }
+}
+
+pub(crate) fn bake_settings(scene: &SceneArgs, layout: &LayoutArgs) -> Result<BakeSettings, Failure> {
+    let layout_kind = match (layout.layout, layout.size) {
+        (LayoutArg::Packed, None) => Layout::Packed,
+        (LayoutArg::Packed, Some(_)) => {
+            return Err(Failure::Arguments("--size is for --layout shared; ask for --density instead".to_owned()));
+        }
+        (LayoutArg::Shared, size) => Layout::Shared { size: size.unwrap_or(0) },
+    };
+    let settings = BakeSettings {
+        transport: transport(scene),
+        samples_per_texel: layout.spp.get(),
+        density: layout.density,
+        layout: layout_kind,
+        threads: scene.threads,
+    };
+    settings.validate()?;
+    Ok(settings)
+}

@@ -1,0 +1,83 @@
+//! What a person reads.
+
+use bevy_kiln::bake::{BakePlan, BakeReport};
+use std::fmt::Display;
+use std::io::Write;
+
+/// Where text for a person goes. Where standard output carries data, it goes to standard error.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Talk {
+    Out,
+    Err,
+}
+
+impl Talk {
+    /// Text beside JSON or a table on standard output.
+    pub(crate) fn beside(data_on_stdout: bool) -> Self {
+        if data_on_stdout { Self::Err } else { Self::Out }
+    }
+
+    /// One line. A closed pipe is nobody's fault and stops nothing.
+    pub(crate) fn say(self, line: impl Display) {
+        let _ = match self {
+            Self::Out => writeln!(std::io::stdout(), "{line}"),
+            Self::Err => writeln!(std::io::stderr(), "{line}"),
+        };
+    }
+
+    pub(crate) fn plan(self, plan: &BakePlan) {
+        self.say("plan");
+        for effect in &plan.effects {
+            let mark = if effect.on { "+" } else { "-" };
+            self.say(format_args!("  {mark} {}: {}", effect.effect, effect.reason));
+        }
+        let mebibytes = plan.memory_bytes as f64 / f64::from(1 << 20);
+        let pages = if plan.pages == 1 { "page" } else { "pages" };
+        self.say(format_args!("  {} texels on {} {pages}, {mebibytes:.1} MiB", plan.texels, plan.pages));
+        for prediction in &plan.predicted {
+            let error = 100.0 * prediction.error;
+            self.say(format_args!("  about {} for an error of {error:.2} %", duration(prediction.seconds)));
+        }
+    }
+
+    pub(crate) fn report(self, what: &str, report: &BakeReport) {
+        let per_second = report.samples as f64 / report.wall_seconds.max(1e-9);
+        let error = &report.relative_stderr;
+        let balance = report.energy_balance;
+        self.say("report");
+        self.say(format_args!("  {} {what}, {} paths, {} rays", report.texels, report.samples, report.rays));
+        self.say(format_args!(
+            "  {} ({:.1} s of processor time), {per_second:.0} paths per second",
+            duration(report.wall_seconds),
+            report.cpu_seconds
+        ));
+        self.say(format_args!(
+            "  relative standard error: mean {:.3} %, 95 % below {:.3} %, worst {:.3} %",
+            100.0 * error.mean,
+            100.0 * error.p95,
+            100.0 * error.max
+        ));
+        match balance {
+            Some(balance) => self.say(format_args!("  energy balance: {balance:.5} (absorbed / emitted)")),
+            None => self.say("  energy balance: none, open scene"),
+        }
+    }
+}
+
+/// Warnings, which always go to standard error.
+pub(crate) fn warn(warnings: &[String]) {
+    for warning in warnings {
+        Talk::Err.say(format_args!("warning: {warning}"));
+    }
+}
+
+/// A time for a person.
+pub(crate) fn duration(seconds: f64) -> String {
+    if seconds < 60.0 {
+        format!("{seconds:.1} s")
+    } else if seconds < 3600.0 {
+        format!("{:.0} min {:.0} s", (seconds / 60.0).floor(), (seconds % 60.0).floor())
+    } else {
+        format!("{:.0} h {:.0} min", (seconds / 3600.0).floor(), (seconds % 3600.0 / 60.0).floor())
+    }
+}

@@ -1,0 +1,170 @@
+//! What a game says to the baker and hears from it. All are triggered with `commands.trigger(...)` and heard by
+//! observers.
+
+use super::settings::SceneSettings;
+use crate::bake::{BakeSettings, Layout, Lightmap, Progress, Stage};
+use crate::trace::{Estimator, Transport};
+use bevy::prelude::*;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+
+/// Where the texels go.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default, Debug, PartialEq, Clone)]
+pub enum LightmapLayout {
+    /// Each object has a rectangle of its own at the asked density.
+    #[default]
+    Packed,
+    /// UV1 is one atlas for the whole scene, laid out by its artist.
+    Shared {
+        /// Width and height of the map [texels].
+        size: u32,
+    },
+}
+
+/// How the textures hold their texels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default, Debug, PartialEq, Clone)]
+pub enum LightmapFormat {
+    /// 4 bytes per texel, 9 bits for each channel and a common exponent.
+    #[default]
+    Rgb9e5,
+    /// 8 bytes per texel, half floats.
+    Rgba16f,
+}
+
+/// Asks for a bake of the world as it is at the end of the frame. The game runs on; when the lightmaps are done
+/// they go on the entities, and [`BakeFinished`] is triggered. One bake runs at a time.
+#[derive(Event, Clone, Debug, PartialEq, Reflect)]
+#[reflect(Event, Default, Debug, PartialEq, Clone)]
+pub struct BakeLightmaps {
+    /// How the scene is read.
+    pub scene: SceneSettings,
+    /// Paths that start in each texel.
+    pub samples_per_texel: u32,
+    /// Texels per metre of surface where an object asks for nothing else.
+    pub density: f32,
+    /// Where the texels go.
+    pub layout: LightmapLayout,
+    /// Bounces before a path is cut, which loses light: `Some(0)` is direct light only. `None` has no cap.
+    pub max_bounces: Option<u32>,
+    /// Which samples an estimate of light is made of; all have the same mean.
+    #[reflect(ignore)]
+    pub estimator: Estimator,
+    /// Changes every random number, and nothing else.
+    pub seed: u64,
+    /// Threads that trace; 0 for all cores.
+    pub threads: u32,
+    /// How the textures hold their texels.
+    pub format: LightmapFormat,
+}
+
+impl Default for BakeLightmaps {
+    fn default() -> Self {
+        let core = BakeSettings::default();
+        Self {
+            scene: SceneSettings::default(),
+            samples_per_texel: core.samples_per_texel,
+            density: core.density,
+            layout: LightmapLayout::default(),
+            max_bounces: core.transport.max_bounces,
+            estimator: core.transport.estimator,
+            seed: core.transport.seed,
+            threads: 0,
+            format: LightmapFormat::default(),
+        }
+    }
+}
+
+impl BakeLightmaps {
+    /// The same in the baker's own words.
+    pub fn bake_settings(&self) -> BakeSettings {
+        BakeSettings {
+            transport: Transport { estimator: self.estimator, max_bounces: self.max_bounces, seed: self.seed },
+            samples_per_texel: self.samples_per_texel,
+            density: self.density,
+            layout: match self.layout {
+                LightmapLayout::Packed => Layout::Packed,
+                LightmapLayout::Shared { size } => Layout::Shared { size },
+            },
+            threads: usize::try_from(self.threads).ok().and_then(NonZeroUsize::new),
+        }
+    }
+}
+
+/// Stops the running bake. The world stays as it was, and [`BakeFailed`] says that it was cancelled.
+#[derive(Event, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Event, Default, Debug, PartialEq, Clone)]
+pub struct CancelBake;
+
+/// Takes the lightmaps of the last bake off again and gives lights, ambient light and earlier lightmaps back as
+/// they were.
+#[derive(Event, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Event, Default, Debug, PartialEq, Clone)]
+pub struct ClearLightmaps;
+
+/// How far the running bake is. Triggered at most once per frame, and only when there is news.
+#[derive(Event, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Debug, PartialEq, Clone)]
+pub struct BakeProgress {
+    /// What it is doing.
+    #[reflect(ignore, default = "first_stage")]
+    pub stage: Stage,
+    /// Finished parts of the stage.
+    pub done: u64,
+    /// All parts of the stage.
+    pub total: u64,
+    /// Mean relative standard error of what is done, once known.
+    pub relative_stderr: Option<f64>,
+}
+
+impl BakeProgress {
+    /// Share of the stage that is done, in [0, 1].
+    pub fn fraction(&self) -> f64 {
+        if self.total == 0 { 0.0 } else { self.done as f64 / self.total as f64 }
+    }
+}
+
+impl From<Progress> for BakeProgress {
+    fn from(progress: Progress) -> Self {
+        let Progress { stage, done, total, relative_stderr } = progress;
+        Self { stage, done, total, relative_stderr }
+    }
+}
+
+/// The lightmaps are done and on their entities.
+#[derive(Event, Clone, Debug, Reflect)]
+#[reflect(from_reflect = false)]
+#[reflect(Debug, Clone)]
+pub struct BakeFinished {
+    /// Covered texels.
+    pub texels: u64,
+    /// Paths that started from them.
+    pub samples: u64,
+    /// Time that passed [s].
+    pub seconds: f64,
+    /// How many entities got a lightmap.
+    pub entities: usize,
+    /// What was left out or changed, one sentence each.
+    pub warnings: Vec<String>,
+    /// The whole result with its report, to be written with `output::write_lightmap`.
+    #[reflect(ignore)]
+    pub lightmap: Arc<Lightmap>,
+}
+
+/// There are no new lightmaps; the world is as it was.
+#[derive(Event, Clone, Debug, PartialEq, Eq, Reflect)]
+#[reflect(from_reflect = false)]
+#[reflect(Debug, PartialEq, Clone)]
+pub struct BakeFailed {
+    /// Why, as a sentence that says what to do.
+    pub reason: String,
+    /// Whether a person stopped it.
+    pub cancelled: bool,
+    /// What had been left out by then, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+fn first_stage() -> Stage {
+    Stage::Prepare
+}

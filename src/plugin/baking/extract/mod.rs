@@ -1,0 +1,147 @@
+//! A Bevy world as a [`Scene`]: the one way in, for the running game and for the command line. Reads, never
+//! writes; what it cannot read becomes an [`ExtractionWarning`].
+//!
+//! Nothing depends on entity numbers: everything is ordered by its stable id, and equal ids by where they stand.
+
+mod camera;
+mod environment;
+mod light;
+mod material;
+mod mesh;
+mod warning;
+
+pub use warning::{ExtractionWarning, Unsimulated};
+
+use super::markers::{LightBlocker, LightmapReceiver};
+use super::settings::SceneSettings;
+use crate::artefact::StableId;
+use crate::plugin::stable_id;
+use crate::scene::{LightmapRequest, Scene, unique_ids};
+use bevy::prelude::*;
+use std::collections::{BTreeMap, HashMap};
+
+/// A world as the baker sees it.
+#[derive(Clone, Debug, Default)]
+pub struct Extraction {
+    /// The scene.
+    pub scene: Scene,
+    /// What was left out or taken for something simpler.
+    pub warnings: Vec<ExtractionWarning>,
+    /// Which entity each instance and each light is.
+    pub entities: BTreeMap<StableId, Entity>,
+    seen: Seen,
+}
+
+/// Where assets that were read already lie in the scene; `None` for a mesh that could not be read.
+#[derive(Clone, Debug, Default)]
+struct Seen {
+    meshes: HashMap<AssetId<Mesh>, Option<usize>>,
+    materials: HashMap<AssetId<StandardMaterial>, usize>,
+}
+
+/// Reads the world as it stands; its transforms and visibility must have been propagated, as they are in `Last`.
+pub fn extract_scene(world: &mut World, settings: &SceneSettings) -> Extraction {
+    let mut out = Extraction::default();
+    let lights = light::find(world, &mut out.warnings);
+    let meshes = find_meshes(world, &mut out.warnings);
+    let things: Vec<Thing> = meshes.into_iter().chain(lights).collect();
+    for thing in name_all(world, things, &mut out) {
+        match thing.kind {
+            Kind::Mesh(request) => mesh::extract(world, &thing, request, settings, &mut out),
+            Kind::RectLight => light::extract(world, &thing, settings, &mut out),
+        }
+        out.entities.insert(thing.id, thing.entity);
+    }
+    material::summarise(&mut out.warnings);
+    environment::extract(world, settings, &mut out);
+    camera::extract(world, &mut out);
+    out
+}
+
+/// Something that becomes a part of the scene.
+struct Thing {
+    id: StableId,
+    /// What a person reads in a warning: the id before it was made unique.
+    name: String,
+    entity: Entity,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Mesh(Option<LightmapRequest>),
+    RectLight,
+}
+
+impl Thing {
+    fn new(world: &World, entity: Entity, kind: Kind) -> Self {
+        let id = stable_id(world, entity);
+        Self { name: id.as_str().to_owned(), id, entity, kind }
+    }
+}
+
+/// Orders things by id and makes the ids unique.
+fn name_all(world: &World, mut things: Vec<Thing>, out: &mut Extraction) -> Vec<Thing> {
+    things.sort_by_cached_key(|thing| {
+        let place = world
+            .get::<GlobalTransform>(thing.entity)
+            .map_or([0; 16], |transform| transform.to_matrix().to_cols_array().map(f32::to_bits));
+        (thing.id.clone(), matches!(thing.kind, Kind::RectLight), place, thing.entity)
+    });
+    for twins in things.chunk_by(|a, b| a.id == b.id).filter(|twins| twins.len() > 1) {
+        let id = twins[0].name.clone();
+        out.warnings.push(ExtractionWarning::SameId { id, count: twins.len() });
+    }
+    let ids = unique_ids(things.iter().map(|thing| thing.id.clone()));
+    for (thing, id) in things.iter_mut().zip(ids) {
+        thing.id = id;
+    }
+    things
+}
+
+/// The meshes that take part, as their marks say.
+fn find_meshes(world: &mut World, warnings: &mut Vec<ExtractionWarning>) -> Vec<Thing> {
+    let only_marked = world.query_filtered::<(), With<LightmapReceiver>>().iter(world).next().is_some();
+    let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
+    let meshes: Vec<Entity> = meshes.iter(world).collect();
+    let world = &*world;
+    let mut things = Vec::new();
+    for entity in meshes.into_iter().filter(|&entity| is_visible(world, entity)) {
+        let role = match nearest_mark(world, entity) {
+            None if only_marked => continue,
+            None => Some(LightmapRequest::default()),
+            Some(mark) => mark,
+        };
+        let thing = Thing::new(world, entity, Kind::Mesh(role));
+        if is_distant_lod(world, entity) {
+            warnings.push(ExtractionWarning::DistantLevelOfDetail { name: thing.name });
+            continue;
+        }
+        things.push(thing);
+    }
+    things
+}
+
+/// What the nearest mark on or above an entity asks for; the inner `None` is a blocker's.
+fn nearest_mark(world: &World, entity: Entity) -> Option<Option<LightmapRequest>> {
+    let mut next = Some(entity);
+    while let Some(entity) = next {
+        if let Some(receiver) = world.get::<LightmapReceiver>(entity) {
+            return Some(Some(LightmapRequest { density: receiver.density }));
+        }
+        if world.get::<LightBlocker>(entity).is_some() {
+            return Some(None);
+        }
+        next = world.get::<ChildOf>(entity).map(ChildOf::parent);
+    }
+    None
+}
+
+fn is_visible(world: &World, entity: Entity) -> bool {
+    world.get::<InheritedVisibility>(entity).is_none_or(|visibility| visibility.get())
+}
+
+fn is_distant_lod(world: &World, entity: Entity) -> bool {
+    use bevy::camera::visibility::VisibilityRange;
+    world.get::<VisibilityRange>(entity).is_some_and(|range| range.start_margin.start > 0.0)
+}

@@ -1,0 +1,34 @@
+//! All that a shipped game needs: names, loading a baked folder, putting it on entities. Knows no tracer.
+
+mod apply;
+mod attach;
+mod folder;
+mod mute;
+mod stable_path;
+
+pub use apply::{AppliedLightmaps, BakedLightmaps};
+pub use folder::{BakedFolder, BakedFolderError};
+pub use stable_path::{KilnId, stable_id};
+
+#[cfg(feature = "bake")]
+pub(crate) use attach::{attach, attached, detach};
+#[cfg(feature = "bake")]
+pub(crate) use folder::lightmap_sampler;
+#[cfg(feature = "bake")]
+pub(crate) use mute::{MutedLight, mute_light, unmute_light};
+
+use super::KilnSystems;
+use bevy::asset::AssetApp;
+use bevy::prelude::*;
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_asset::<BakedFolder>()
+        .register_asset_loader(folder::BakedFolderLoader)
+        .register_type::<KilnId>()
+        .register_type::<BakedLightmaps>()
+        .add_observer(apply::take_off_with_component)
+        .add_systems(
+            PreUpdate,
+            (attach::attach_pending, apply::apply_baked_lightmaps).chain().in_set(KilnSystems::Display),
+        );
+}

@@ -1,0 +1,77 @@
+//! bevy_kiln inside Bevy: the only part that knows the engine.
+//!
+//! [`KilnPlugin`] brings all of it. A shipped game needs [`BakedLightmaps`] alone and may leave out the `bake`
+//! feature, and with it the tracer.
+//!
+//! ```no_run
+//! # #[cfg(feature = "bake")] {
+//! use bevy::prelude::*;
+//! use bevy_kiln::prelude::*;
+//!
+//! fn bake(keys: Res<ButtonInput<KeyCode>>, mut commands: Commands) {
+//!     if keys.just_pressed(KeyCode::KeyB) {
+//!         commands.trigger(BakeLightmaps::default()); // 256 paths per texel, 16 texels per metre, as displayed
+//!     }
+//!     if keys.just_pressed(KeyCode::Escape) {
+//!         commands.trigger(CancelBake); // the world stays as it was
+//!     }
+//!     if keys.just_pressed(KeyCode::KeyC) {
+//!         commands.trigger(ClearLightmaps); // lightmaps off, lights back
+//!     }
+//! }
+//!
+//! App::new()
+//!     .add_plugins((DefaultPlugins, KilnPlugin))
+//!     .add_systems(Update, bake)
+//!     .add_observer(|at: On<BakeProgress>| info!("{:.0} %", 100.0 * at.fraction()))
+//!     .add_observer(|done: On<BakeFinished>| info!("{} texels in {:.1} s", done.texels, done.seconds))
+//!     .add_observer(|failed: On<BakeFailed>| error!("{}", failed.reason))
+//!     .run();
+//! # }
+//! ```
+//!
+//! Mark what shall receive a lightmap with [`LightmapReceiver`] and what only blocks and reflects with
+//! [`LightBlocker`], on the thing or on anything above it; without a receiver anywhere every mesh receives. What
+//! a folder of the `kiln` command holds goes on a scene as [`BakedLightmaps`] beside its root.
+//!
+//! Deferred rendering adds baked lights a second time whatever the flags say (Bevy 0.19); use forward rendering.
+
+mod display;
+
+#[cfg(feature = "bake")]
+mod baking;
+#[cfg(feature = "cli")]
+pub mod windowless;
+
+pub use display::{AppliedLightmaps, BakedFolder, BakedFolderError, BakedLightmaps, KilnId, stable_id};
+
+#[cfg(feature = "bake")]
+pub use baking::{
+    AmbientMode, BakeFailed, BakeFinished, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps, EmissiveUnit,
+    Extraction, ExtractionWarning, LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver, RangeWindow,
+    SceneSettings, Unsimulated, extract_scene,
+};
+
+use bevy::prelude::*;
+
+/// Baked global illumination: loads and shows lightmaps and, with the feature `bake`, makes them.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct KilnPlugin;
+
+/// When the plugin works.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum KilnSystems {
+    /// In `PreUpdate`: lightmaps go on and off, lights are muted and given back. Bevy looks for changed materials
+    /// in `PostUpdate`, so nothing of this may be later.
+    Display,
+    /// In `Last`, where every transform is propagated: the snapshot for a bake that was asked for.
+    Snapshot,
+}
+
+impl Plugin for KilnPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins(display::plugin);
+        #[cfg(feature = "bake")]
+        app.add_plugins(baking::plugin);
+    }
+}

@@ -1,0 +1,187 @@
+//! A scene file in an app without window, GPU or log: what the `kiln` command bakes from, and any other program
+//! that bakes on a machine without a screen.
+
+use super::KilnPlugin;
+use bevy::app::{App, PluginGroup, PluginGroupBuilder, TaskPoolPlugin};
+use bevy::asset::{AssetLoadError, AssetPlugin, LoadState, RecursiveDependencyLoadState, UnapprovedPathMode};
+use bevy::gltf::{Gltf, GltfPlugin};
+use bevy::image::{CompressedImageFormatSupport, CompressedImageFormats};
+use bevy::prelude::*;
+use bevy::window::{ExitCondition, WindowPlugin};
+use bevy::world_serialization::{DynamicWorld, DynamicWorldRoot, WorldAssetRoot, WorldSerializationPlugin};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use thiserror::Error;
+
+/// Frames after loading in which a scene is spawned and its transforms and visibility are propagated.
+const FRAMES_TO_SETTLE: usize = 3;
+
+/// Longest wait for a file to load.
+const PATIENCE: Duration = Duration::from_secs(600);
+
+/// Why a scene file cannot be opened.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum OpenError {
+    /// There is no such file.
+    #[error("there is no file {}; check the path", path.display())]
+    Missing {
+        /// The path asked for.
+        path: PathBuf,
+    },
+    /// It is of a kind that is not read.
+    #[error("{} is no scene that can be read; give a .glb, a .gltf or a .scn.ron file", path.display())]
+    UnknownKind {
+        /// The path asked for.
+        path: PathBuf,
+    },
+    /// It cannot be read.
+    #[error("{} cannot be loaded ({reason}); it may be damaged or cut short, export it again", path.display())]
+    Broken {
+        /// The path asked for.
+        path: PathBuf,
+        /// What the loader said.
+        reason: String,
+    },
+    /// It holds no scene.
+    #[error("{} holds no scene; export it with one", path.display())]
+    NoScene {
+        /// The path asked for.
+        path: PathBuf,
+    },
+    /// Loading does not end.
+    #[error("{} is still not loaded after {} s; see that the disk answers", path.display(), PATIENCE.as_secs())]
+    TooSlow {
+        /// The path asked for.
+        path: PathBuf,
+    },
+}
+
+/// All of Bevy that a scene needs to be read, and no renderer; to build an app of one's own with
+/// [`KilnPlugin`].
+#[derive(Clone, Debug, Default)]
+pub struct WindowlessPlugins {
+    /// Where assets are found.
+    pub asset_folder: PathBuf,
+}
+
+impl PluginGroup for WindowlessPlugins {
+    fn build(self) -> PluginGroupBuilder {
+        PluginGroupBuilder::start::<Self>()
+            .add(TaskPoolPlugin::default())
+            .add(bevy::diagnostic::FrameCountPlugin)
+            .add(bevy::time::TimePlugin)
+            .add(TransformPlugin)
+            .add(AssetPlugin {
+                file_path: self.asset_folder.to_string_lossy().into_owned(),
+                // The person who runs the program names the file.
+                unapproved_path_mode: UnapprovedPathMode::Allow,
+                ..default()
+            })
+            .add(WorldSerializationPlugin)
+            // No window; but cameras listen for what windows do.
+            .add(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
+            .add(bevy::render::RenderPlugin { render_creation: no_gpu(), ..default() })
+            .add(ImagePlugin::default())
+            .add(bevy::mesh::MeshPlugin)
+            .add(bevy::camera::CameraPlugin)
+            .add(bevy::light::LightPlugin)
+            .add(GltfPlugin::default())
+            .add(bevy::pbr::PbrPlugin::default())
+    }
+}
+
+fn no_gpu() -> bevy::render::settings::RenderCreation {
+    use bevy::render::settings::{RenderCreation, WgpuSettings};
+    RenderCreation::Automatic(Box::new(WgpuSettings { backends: None, ..default() }))
+}
+
+/// Opens a scene file in an app of its own, loaded and spawned, with no ambient light; ready for
+/// [`extract_scene`](super::extract_scene).
+pub fn open_scene(path: &Path) -> Result<App, OpenError> {
+    let kind = Kind::of(path)?;
+    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    if !absolute.is_file() {
+        return Err(OpenError::Missing { path: path.to_owned() });
+    }
+    let (Some(folder), Some(file)) = (absolute.parent(), absolute.file_name()) else {
+        return Err(OpenError::Missing { path: path.to_owned() });
+    };
+    let mut app = App::new();
+    // Without a GPU nothing is uploaded, so compressed textures need no format that one supports.
+    app.insert_resource(CompressedImageFormatSupport(CompressedImageFormats::all()))
+        .add_plugins(WindowlessPlugins { asset_folder: folder.to_owned() })
+        .add_plugins(KilnPlugin)
+        .insert_resource(GlobalAmbientLight::NONE);
+    app.finish();
+    app.cleanup();
+    let file = bevy::asset::AssetPath::from(PathBuf::from(file));
+    match kind {
+        Kind::Gltf => {
+            let handle = app.world().resource::<AssetServer>().load::<Gltf>(file);
+            wait(&mut app, handle.id().untyped(), path)?;
+            spawn_gltf(&mut app, &handle, path)?;
+        }
+        Kind::DynamicWorld => {
+            let handle = app.world().resource::<AssetServer>().load::<DynamicWorld>(file);
+            wait(&mut app, handle.id().untyped(), path)?;
+            app.world_mut().spawn(DynamicWorldRoot(handle));
+        }
+    }
+    for _ in 0..FRAMES_TO_SETTLE {
+        app.update();
+    }
+    Ok(app)
+}
+
+enum Kind {
+    Gltf,
+    DynamicWorld,
+}
+
+impl Kind {
+    fn of(path: &Path) -> Result<Self, OpenError> {
+        let name = path.file_name().map(|name| name.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        if name.ends_with(".glb") || name.ends_with(".gltf") {
+            Ok(Self::Gltf)
+        } else if name.ends_with(".scn.ron") {
+            Ok(Self::DynamicWorld)
+        } else {
+            Err(OpenError::UnknownKind { path: path.to_owned() })
+        }
+    }
+}
+
+fn spawn_gltf(app: &mut App, handle: &Handle<Gltf>, path: &Path) -> Result<(), OpenError> {
+    let gltf = app.world().resource::<Assets<Gltf>>().get(handle);
+    let scene = gltf.and_then(|gltf| gltf.default_scene.clone().or_else(|| gltf.scenes.first().cloned()));
+    let Some(scene) = scene else { return Err(OpenError::NoScene { path: path.to_owned() }) };
+    app.world_mut().spawn(WorldAssetRoot(scene));
+    Ok(())
+}
+
+/// Runs the app until an asset is loaded with all that it refers to.
+fn wait(app: &mut App, id: bevy::asset::UntypedAssetId, path: &Path) -> Result<(), OpenError> {
+    let start = Instant::now();
+    loop {
+        app.update();
+        let server = app.world().resource::<AssetServer>();
+        let broken = |error: &AssetLoadError| OpenError::Broken { path: path.to_owned(), reason: reason(error) };
+        match (server.load_state(id), server.recursive_dependency_load_state(id)) {
+            (LoadState::Failed(error), _) => return Err(broken(&error)),
+            (_, RecursiveDependencyLoadState::Failed(error)) => return Err(broken(&error)),
+            (LoadState::Loaded, RecursiveDependencyLoadState::Loaded) => return Ok(()),
+            _ if start.elapsed() > PATIENCE => return Err(OpenError::TooSlow { path: path.to_owned() }),
+            _ => std::thread::sleep(Duration::from_millis(1)),
+        }
+    }
+}
+
+/// What went wrong, without the loader's type and without a stack trace.
+fn reason(error: &AssetLoadError) -> String {
+    let text = match error {
+        AssetLoadError::AssetLoaderError(error) => error.error().to_string(),
+        other => other.to_string(),
+    };
+    text.lines().next().unwrap_or_default().trim().to_owned()
+}
