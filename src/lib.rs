@@ -52,10 +52,10 @@ pub mod trace;
 /// What an app needs by name: `use bevy_kiln::prelude::*`.
 #[cfg(feature = "bevy")]
 pub mod prelude {
-    pub use crate::plugin::{BakedFolder, BakedLightmaps, KilnId, KilnPlugin, KilnSystems};
     #[cfg(feature = "bake")]
     pub use crate::plugin::{
         AmbientMode, BakeFailed, BakeFinished, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps, EmissiveUnit,
         LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver, RangeWindow, SceneSettings,
     };
+    pub use crate::plugin::{BakedFolder, BakedLightmaps, KilnId, KilnPlugin, KilnSystems};
 }

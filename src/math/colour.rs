@@ -12,7 +12,6 @@ pub fn luminance(colour: impl Into<DVec3>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
 
     #[test]
     fn white_is_one_and_green_weighs_most() {
