@@ -3,7 +3,7 @@
 use super::atlas::{Atlas, Chart};
 use super::balance::energy_balance;
 use super::dilate::dilate;
-use super::gather::{Estimate, KeyKind, key, relative_error};
+use super::gather::{Estimate, KeyKind, key};
 use super::raster::{Fragment, MIN_COVERAGE, covered_texels};
 use super::texel::Texel;
 use super::workers::Workers;
@@ -91,19 +91,8 @@ pub fn bake_lightmap(
     let balance = energy_balance(&tracer, &sites, &work.results, &settings.transport, &workers)?;
     workers.announce(Stage::Repair)?;
     let pages = pages(&atlas, &sites, &work.results);
-    let mut warnings: Vec<BakeWarning> = faults.into_iter().map(BakeWarning::from).collect();
-    warnings.extend(overlaps);
-    let report = BakeReport {
-        texels: sites.len() as u64,
-        samples: work.results.iter().map(|estimate| estimate.samples).sum(),
-        rays: work.results.iter().map(|estimate| estimate.rays).sum(),
-        cpu_seconds: work.cpu.as_secs_f64(),
-        wall_seconds: clock.elapsed().as_secs_f64(),
-        relative_stderr: relative_error(&work.results),
-        energy_balance: balance,
-        clamped: 0,
-        warnings,
-    };
+    let warnings = faults.into_iter().map(BakeWarning::from).chain(overlaps);
+    let report = BakeReport { energy_balance: balance, ..BakeReport::of(&work, clock.elapsed(), warnings) };
     let baked_lights = scene.lights.iter().filter(|light| light.faults().is_empty()).map(|light| light.id().clone());
     let mut baked_lights: Vec<StableId> = baked_lights.collect();
     baked_lights.sort();

@@ -1,6 +1,6 @@
 //! A light meter: irradiance at points of the world, on surfaces or in mid-air.
 
-use super::gather::{Estimate, KeyKind, key, relative_error};
+use super::gather::{Estimate, KeyKind, key};
 use super::workers::Workers;
 use super::{BakeError, BakeReport, BakeWarning, CancelToken, ProgressSink, Stage};
 use crate::math::combine;
@@ -103,16 +103,7 @@ pub fn measure_irradiance(
     };
     Ok(Measurement {
         readings: work.results.iter().map(reading).collect(),
-        report: BakeReport {
-            texels: points.len() as u64,
-            samples: work.results.iter().map(|estimate| estimate.samples).sum(),
-            rays: work.results.iter().map(|estimate| estimate.rays).sum(),
-            cpu_seconds: work.cpu.as_secs_f64(),
-            wall_seconds: clock.elapsed().as_secs_f64(),
-            relative_stderr: relative_error(&work.results),
-            warnings: faults.into_iter().map(BakeWarning::from).collect(),
-            ..BakeReport::default()
-        },
+        report: BakeReport::of(&work, clock.elapsed(), faults.into_iter().map(BakeWarning::from)),
     })
 }
 

@@ -1,6 +1,6 @@
 //! A path-traced picture: the reference that a baked scene is held against.
 
-use super::gather::{Estimate, KeyKind, key, relative_error};
+use super::gather::{Estimate, KeyKind, key};
 use super::workers::Workers;
 use super::{BakeError, BakeReport, BakeWarning, CancelToken, ProgressSink, Stage};
 use crate::scene::{Camera, Scene};
@@ -84,16 +84,7 @@ pub fn render_picture(
         height,
         radiance: work.results.iter().map(|estimate| estimate.mean.as_vec3()).collect(),
         stderr: work.results.iter().map(|estimate| estimate.stderr.as_vec3()).collect(),
-        report: BakeReport {
-            texels: u64::from(width) * u64::from(height),
-            samples: work.results.iter().map(|estimate| estimate.samples).sum(),
-            rays: work.results.iter().map(|estimate| estimate.rays).sum(),
-            cpu_seconds: work.cpu.as_secs_f64(),
-            wall_seconds: clock.elapsed().as_secs_f64(),
-            relative_stderr: relative_error(&work.results),
-            warnings: faults.into_iter().map(BakeWarning::from).collect(),
-            ..BakeReport::default()
-        },
+        report: BakeReport::of(&work, clock.elapsed(), faults.into_iter().map(BakeWarning::from)),
     })
 }
 

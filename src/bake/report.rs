@@ -1,6 +1,9 @@
 //! What a bake did, in numbers.
 
 use super::BakeWarning;
+use super::gather::{Estimate, relative_error};
+use super::workers::Work;
+use std::time::Duration;
 
 /// What a bake did, in numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,4 +37,21 @@ pub struct RelativeError {
     pub p95: f64,
     /// Worst.
     pub max: f64,
+}
+
+impl BakeReport {
+    /// The report of estimates that took `wall` time.
+    pub(super) fn of(work: &Work<Estimate>, wall: Duration, warnings: impl Iterator<Item = BakeWarning>) -> Self {
+        Self {
+            texels: work.results.len() as u64,
+            samples: work.results.iter().map(|estimate| estimate.samples).sum(),
+            rays: work.results.iter().map(|estimate| estimate.rays).sum(),
+            cpu_seconds: work.cpu.as_secs_f64(),
+            wall_seconds: wall.as_secs_f64(),
+            relative_stderr: relative_error(&work.results),
+            energy_balance: None,
+            clamped: 0,
+            warnings: warnings.collect(),
+        }
+    }
 }
