@@ -122,3 +122,6 @@ impl TriangleShape {
         )
     }
 }
+
+#[cfg(test)]
+mod tests;
