@@ -166,3 +166,6 @@ fn tree_ray(origin: Vec3, direction: Vec3, t_max: f32) -> Ray {
     let direction = direction + Vec3::ZERO;
     Ray::new(origin.to_array().into(), direction.to_array().into(), 0.0, t_max)
 }
+
+#[cfg(test)]
+mod tests;

@@ -11,6 +11,8 @@ mod mis;
 mod path;
 mod sampler;
 mod surface;
+#[cfg(test)]
+mod testing;
 mod tracer;
 mod transport;
 mod triangle;

@@ -208,3 +208,6 @@ impl Surface {
 fn survival_probability(throughput: Vec3) -> f32 {
     (throughput.max_element() / ROULETTE_THROUGHPUT).min(MAX_SURVIVAL)
 }
+
+#[cfg(test)]
+mod tests;

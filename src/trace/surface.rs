@@ -124,3 +124,6 @@ impl TriangleShape {
         )
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -129,3 +129,6 @@ fn exact_difference_of_products(a: f32, b: f32, c: f32, d: f32) -> f32 {
     // A difference too small for f32 keeps its sign.
     if rounded == 0.0 && difference != 0.0 { f32::MIN_POSITIVE.copysign(difference as f32) } else { rounded }
 }
+
+#[cfg(test)]
+mod tests;

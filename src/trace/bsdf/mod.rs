@@ -53,3 +53,6 @@ impl Bsdf {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -60,9 +60,15 @@ impl Emitters {
         Some(LightSample { pdf: sample.pdf * chosen.probability as f32, ..sample })
     }
 
+    /// Chance with which `sample` takes this source.
+    #[inline]
+    pub(super) fn choice_probability(&self, index: u32) -> f64 {
+        self.choice.as_ref().map_or(0.0, |choice| choice.probability(index as usize))
+    }
+
     /// Density with which `sample` finds source `index` in the unit direction `wi`, `distance` away [1/sr].
     pub(in crate::trace) fn pdf(&self, index: u32, receiver: Vec3, wi: Vec3, distance: f32) -> f32 {
-        let probability = self.choice.as_ref().map_or(0.0, |choice| choice.probability(index as usize) as f32);
+        let probability = self.choice_probability(index) as f32;
         if probability == 0.0 {
             return 0.0;
         }

@@ -24,3 +24,6 @@ pub(super) struct LightSample {
     /// Density of `wi` [1/sr].
     pub(super) pdf: f32,
 }
+
+#[cfg(test)]
+mod tests;

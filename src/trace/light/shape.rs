@@ -66,7 +66,7 @@ impl Emitter {
         Seen::ByArea.sample_offset(&self.shape, Vec3::ZERO, u)
     }
 
-    fn centre(&self) -> Vec3 {
+    pub(super) fn centre(&self) -> Vec3 {
         match self.shape {
             EmitterShape::Rectangle { corner, edges: [u, v] } => corner + 0.5 * (u + v),
             EmitterShape::Triangle { vertices: [a, b, c] } => (a + b + c) / 3.0,
@@ -130,14 +130,14 @@ impl Emitter {
 }
 
 /// A source's shape as it is sampled from one receiver.
-enum Seen {
+pub(super) enum Seen {
     Rectangle(SphericalRectangle),
     Triangle(SphericalTriangle),
     ByArea,
 }
 
 impl Seen {
-    fn new(shape: &EmitterShape, receiver: Vec3) -> Self {
+    pub(super) fn new(shape: &EmitterShape, receiver: Vec3) -> Self {
         match *shape {
             EmitterShape::Rectangle { corner, edges: [u, v] } => {
                 SphericalRectangle::new(corner, u, v, receiver).map_or(Self::ByArea, Self::Rectangle)

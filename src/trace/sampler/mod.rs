@@ -42,3 +42,6 @@ pub(crate) trait Sampler {
     /// Four numbers in [0, 1).
     fn draw(&self, dimensions: Dimensions) -> [f32; 4];
 }
+
+#[cfg(test)]
+mod tests;

@@ -7,6 +7,9 @@
 use super::{Dimensions, Sampler};
 use crate::math::{combine, seed32};
 
+/// Sets the keys of later blocks apart from all that a caller derives from the same key by a small number.
+const BLOCKS: u64 = 0x626c_6f63_6b73;
+
 /// One path's numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sobol {
@@ -19,7 +22,7 @@ impl Sobol {
     #[inline]
     pub(crate) fn new(key: u64, index: u64) -> Self {
         let block = index >> 16;
-        let key = if block == 0 { key } else { combine(key, block) };
+        let key = if block == 0 { key } else { combine(combine(key, BLOCKS), block) };
         Self { key, index: (index & 0xffff) as u32 }
     }
 }

@@ -1,0 +1,174 @@
+//! The estimator as a whole, in furnaces, whose answer is known: a closed room of one albedo ρ whose walls all glow
+//! with Le shows Le / (1 − ρ) in every direction. And that the check which says so would notice if it did not.
+
+use super::{MAX_SURVIVAL, PathStart, survival_probability};
+use crate::math::testing::{Random, mean_and_error, mean_within};
+use crate::math::{Frame, combine, square_to_cosine_hemisphere, square_to_triangle};
+use crate::scene::Material;
+use crate::trace::mis::power_heuristic;
+use crate::trace::sampler::{Dimensions, Sampler};
+use crate::trace::testing::Shape;
+use crate::trace::{Estimator, Sobol, Tracer, Transport};
+use glam::{Affine3A, Vec2, Vec3};
+use std::f32::consts::FRAC_1_PI;
+
+/// Replicates of each mean.
+const REPLICATES: u64 = 16;
+
+/// Paths of each replicate.
+const PATHS: u64 = 65_536;
+
+/// How far a furnace may be off, relative: the project's promise.
+const TOLERANCE: f64 = 1e-3;
+
+fn furnace(albedo: f32) -> (Tracer, f64) {
+    let material = Material { emitted_radiance: Vec3::ONE, ..Material::diffuse("wall", Vec3::splat(albedo)) };
+    let truth = 1.0 / (1.0 - f64::from(albedo));
+    (Tracer::new(&Shape::cube().scene(material, Affine3A::IDENTITY)), truth)
+}
+
+/// Mean and standard error of `value`, one path's E/π from a start anywhere on the walls.
+fn measure(tracer: &Tracer, paths: u64, value: impl Fn(&PathStart, &Sobol) -> Vec3) -> (f64, f64) {
+    let replicate = |replicate| {
+        let path = |index| {
+            let sampler = Sobol::new(combine(77, replicate), index);
+            let [u, v, choice, _] = sampler.draw(Dimensions::Start);
+            let weights = square_to_triangle(Vec2::new(u, v));
+            let triangle = (choice * tracer.triangle_count() as f32) as u32;
+            let start = tracer.start_on_triangle(triangle, weights.to_array(), tracer.normal(triangle));
+            f64::from(value(&start, &sampler).y)
+        };
+        (0..paths).map(path).sum::<f64>() / paths as f64
+    };
+    mean_and_error(&(0..REPLICATES).map(replicate).collect::<Vec<f64>>())
+}
+
+#[test]
+fn the_furnace() {
+    for (albedo, estimator) in [(0.0, Estimator::Bsdf), (0.5, Estimator::Mis), (0.9, Estimator::Bsdf)] {
+        let (tracer, truth) = furnace(albedo);
+        let transport = Transport { estimator, ..Transport::default() };
+        let (mean, error) =
+            measure(&tracer, PATHS, |start, sampler| tracer.diffuse_radiance(start, sampler, &transport, &mut 0));
+        let found = mean_within(mean, error, truth, TOLERANCE * truth);
+        assert_eq!(found, Ok(()), "ρ = {albedo}, {estimator:?}");
+    }
+}
+
+/// What may be wrong with a path tracer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fault {
+    None,
+    /// Roulette divides by a chance of survival above 1.
+    UnclampedRoulette,
+    /// The path is cut where it still carries a hundredth.
+    DroppedBounces,
+    /// Light samples forget the cosine at the receiver.
+    MissingCosine,
+    /// The density of light samples is 5 % too large: in their estimate alone, not in the weights.
+    LightPdf,
+    /// Both strategies count in full.
+    NoWeights,
+    /// Survivors of roulette do not stand in for the rest.
+    RouletteWithoutDivision,
+}
+
+/// The estimator written a second time, short and slow, with a fault.
+fn second_opinion(tracer: &Tracer, start: &PathStart, sampler: &Sobol, fault: Fault) -> Vec3 {
+    let (mut vertex, mut throughput, mut radiance, mut albedo) = (*start, Vec3::ONE, Vec3::ZERO, Vec3::ONE);
+    for number in 0.. {
+        let frame = Frame::new(vertex.normal);
+        let weigh = |own: f32, other: f32| if fault == Fault::NoWeights { 1.0 } else { power_heuristic(own, other) };
+        let [u, v, choice, _] = sampler.draw(Dimensions::Light { vertex: number });
+        if let Some(sample) = tracer.emitters.sample(vertex.position, Vec2::new(u, v), choice) {
+            let cosine = vertex.normal.dot(sample.wi);
+            if cosine > 0.0 && tracer.is_visible(vertex.origin, sample.target) {
+                let pdf = if fault == Fault::LightPdf { 1.05 * sample.pdf } else { sample.pdf };
+                let scattered = albedo * FRAC_1_PI * if fault == Fault::MissingCosine { 1.0 } else { cosine };
+                radiance += throughput * scattered * sample.radiance * weigh(sample.pdf, cosine * FRAC_1_PI) / pdf;
+            }
+        }
+        let [u, v, u_survive, _] = sampler.draw(Dimensions::Scatter { vertex: number });
+        let local = square_to_cosine_hemisphere(Vec2::new(u, v));
+        let wi = frame.world_from_local(local);
+        throughput *= albedo;
+        let Some(hit) = tracer.accel.closest(vertex.origin, wi, f32::INFINITY) else {
+            break;
+        };
+        if tracer.normal(hit.triangle).dot(wi) < 0.0 {
+            let emitter = tracer.emitter_of[hit.triangle as usize];
+            let pdf = tracer.emitters.pdf(emitter, vertex.position, wi, hit.t);
+            radiance += throughput * tracer.emitters.get(emitter).radiance * weigh(local.z * FRAC_1_PI, pdf);
+        }
+        albedo = tracer.diffuse_albedo(hit.triangle);
+        let survival = match fault {
+            Fault::UnclampedRoulette => (throughput * albedo).max_element() / super::ROULETTE_THROUGHPUT,
+            _ => survival_probability(throughput * albedo),
+        };
+        if u_survive >= survival || fault == Fault::DroppedBounces && number >= 5 {
+            break;
+        }
+        if fault != Fault::RouletteWithoutDivision {
+            throughput /= survival;
+        }
+        vertex = tracer.start_on_triangle(hit.triangle, hit.barycentric, tracer.normal(hit.triangle));
+    }
+    radiance
+}
+
+/// The check passes what is right, and rejects each planted fault by what it does to the mean, not by noise.
+#[test]
+fn planted_faults_are_rejected() {
+    let (tracer, truth) = furnace(0.5);
+    let verdict = |fault, paths| {
+        let (mean, error) = measure(&tracer, paths, |start, sampler| second_opinion(&tracer, start, sampler, fault));
+        let bias = (mean - truth).abs() / error;
+        (mean_within(mean, error, truth, TOLERANCE * truth), bias)
+    };
+    assert_eq!(verdict(Fault::None, PATHS).0, Ok(()));
+    for fault in [
+        Fault::UnclampedRoulette,
+        Fault::DroppedBounces,
+        Fault::MissingCosine,
+        Fault::LightPdf,
+        Fault::NoWeights,
+        Fault::RouletteWithoutDivision,
+    ] {
+        let (found, bias) = verdict(fault, 8192);
+        assert!(found.is_err() && bias > 5.0, "{fault:?}: {found:?}, {bias} standard errors");
+    }
+}
+
+/// The second opinion is the same estimator: path by path, but for rounding.
+#[test]
+fn the_second_opinion_is_the_estimator() {
+    let (tracer, _) = furnace(0.5);
+    for index in 0..500 {
+        let sampler = Sobol::new(5, index);
+        let [u, v, ..] = sampler.draw(Dimensions::Start);
+        let weights = [0.5 * u, 0.5 * v];
+        let start = tracer.start_on_triangle((index % 12) as u32, weights, tracer.normal((index % 12) as u32));
+        let one = tracer.diffuse_radiance(&start, &sampler, &Transport::default(), &mut 0).y;
+        let other = second_opinion(&tracer, &start, &sampler, Fault::None).y;
+        assert!((one - other).abs() < 1e-4 * one, "{one} {other}");
+    }
+}
+
+/// What survives roulette, divided by the chance, is on average what went in; and the chance is one.
+#[test]
+fn roulette_loses_nothing() {
+    let mut random = Random::new(1);
+    for step in 1..200 {
+        let throughput = Vec3::new(0.3, 1.0, 0.7) * 0.02 * step as f32;
+        let survival = survival_probability(throughput);
+        assert!(survival > 0.0 && survival <= MAX_SURVIVAL, "{throughput}: {survival}");
+        // One number in each of a thousand equal intervals.
+        let survivor = |index| if (index as f32 + random.unit()) / 1000.0 < survival { 1.0 / survival } else { 0.0 };
+        let mean = (0..1000).map(survivor).sum::<f32>() / 1000.0;
+        assert!((mean - 1.0).abs() <= 0.0011 / survival, "{throughput}: {mean}");
+    }
+    assert_eq!(survival_probability(Vec3::ZERO), 0.0);
+    assert_eq!(survival_probability(Vec3::splat(1e9)), MAX_SURVIVAL);
+    let dim = survival_probability(Vec3::splat(0.01));
+    assert!((survival_probability(Vec3::splat(0.02)) - 2.0 * dim).abs() < 1e-6);
+}
