@@ -16,7 +16,7 @@ const RECEIVERS: [Vec3; 5] = [
 ];
 
 fn source(shape: EmitterShape, double_sided: bool) -> Emitter {
-    Emitter { shape, normal: Vec3::Z, radiance: Vec3::ONE, double_sided, inverse_range: 0.0, error: 0.0 }
+    Emitter { shape, normal: Vec3::Z, radiance: Vec3::ONE, double_sided, inverse_range: 0.0, error: Vec3::ZERO }
 }
 
 fn rectangle() -> Emitter {

@@ -87,7 +87,7 @@ fn a_neighbour_is_not_missed() {
         for side in [1.0, -1.0] {
             let weights = (Vec2::splat(0.2) + 0.2 * random.square()).to_array();
             let normal = side * shape.normal;
-            let step = NEIGHBOUR * shape.error * normal.abs().element_sum();
+            let step = NEIGHBOUR * shape.error.dot(normal.abs());
             let neighbour = shape.vertices.map(|vertex| vertex + step * normal);
             let [a, b, c] = shape.vertices;
             let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
@@ -142,8 +142,8 @@ fn points_lie_within_the_bound() {
         let [a, b, c] = if mirrored { [exact[0], exact[2], exact[1]] } else { exact };
         let weights = square_to_triangle(random.square());
         let point = a + (b - a) * f64::from(weights.x) + (c - a) * f64::from(weights.y);
-        let off = (shape.position(weights.to_array()).as_dvec3() - point).abs().max_element();
-        worst = worst.max(off / f64::from(shape.error));
+        let off = (shape.position(weights.to_array()).as_dvec3() - point).abs();
+        worst = worst.max((off / shape.error.as_dvec3()).max_element());
     }
     assert!((0.02..1.0).contains(&worst), "{worst}");
 }
