@@ -93,7 +93,7 @@ fn a_sound_bake_writes_a_whole_folder_and_ends_with_its_json() {
     let files: Vec<&str> = json["files"].as_array().unwrap().iter().map(|file| file.as_str().unwrap()).collect();
     assert!(files.len() >= 3 && files.iter().all(|file| Path::new(file).is_file()), "{files:?}");
     let stderr = text(&output.stderr);
-    for part in ["plan", "report", "paths per second", "energy balance"] {
+    for part in ["plan", "report", "samples per second", "energy balance"] {
         assert!(stderr.contains(part), "{part} in {stderr}");
     }
     // The lamp has no second UV set, and that is all that is wrong with the box.

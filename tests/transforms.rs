@@ -131,3 +131,30 @@ fn smooth_normals_receive_and_broken_ones_do_no_harm() {
         assert!(bright(&scene) > 0.0);
     }
 }
+
+/// What a UV1 does to texels is told, never silent.
+#[test]
+fn overlapping_and_vanishing_uv1_are_named() {
+    use bevy_kiln::bake::BakeWarning;
+    let mut overlapping = scene();
+    let uv1 = overlapping.meshes[1].uv1.as_mut().unwrap();
+    // Both triangles of the floor on the same half of the square.
+    (uv1[0], uv1[1], uv1[2], uv1[3]) = (Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::X);
+    let warnings = bake(&overlapping, 2.0).report.warnings;
+    assert!(matches!(&warnings[..], [BakeWarning::OverlappingUv1 { texels, .. }] if *texels > 10), "{warnings:?}");
+
+    let mut vanishing = scene();
+    for uv in vanishing.meshes[1].uv1.as_mut().unwrap() {
+        *uv = uv.with_y(0.5 + 1e-7 * uv.y);
+    }
+    let settings = BakeSettings {
+        samples_per_texel: 16,
+        layout: bevy_kiln::bake::Layout::Shared { size: 64 },
+        ..BakeSettings::default()
+    };
+    let mut alone = vanishing.clone();
+    alone.instances.iter_mut().filter(|instance| instance.name != "floor").for_each(|other| other.lightmap = None);
+    let lightmap = bake_lightmap(&alone, &settings, &(), &CancelToken::default()).unwrap();
+    let warnings = lightmap.report.warnings;
+    assert!(matches!(&warnings[..], [BakeWarning::NoTexels { .. }]), "{warnings:?}");
+}

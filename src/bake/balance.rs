@@ -7,7 +7,7 @@
 
 use super::BakeError;
 use super::gather::{Estimate, KeyKind, key};
-use super::lightmap::Site;
+use super::sites::Site;
 use super::workers::Workers;
 use crate::math::Discrete;
 use crate::math::{combine, luminance, square_to_triangle};

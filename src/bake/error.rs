@@ -70,6 +70,14 @@ pub enum BakeWarning {
         /// How many texels.
         texels: u64,
     },
+    /// An object whose UV1 covers no texel by enough to be measured.
+    #[error(
+        "{subject} covers less than a thousandth of any texel, so it gets no lightmap; ask for more texels per metre"
+    )]
+    NoTexels {
+        /// The object.
+        subject: Subject,
+    },
     /// Texel values beyond what a texture format can hold.
     #[error("{texels} texels are brighter than {format} can hold ({limit} cd/m²) and were clamped")]
     Clamped {

@@ -3,16 +3,14 @@
 use super::atlas::{Atlas, Chart};
 use super::balance::energy_balance;
 use super::dilate::dilate;
-use super::gather::{Estimate, KeyKind, key};
-use super::raster::{Fragment, MIN_COVERAGE, covered_texels};
-use super::texel::Texel;
+use super::gather::Estimate;
+use super::sites::{Site, sites};
 use super::workers::Workers;
-use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, Layout, ProgressSink, Stage};
+use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, ProgressSink, Stage};
 use crate::artefact::StableId;
-use crate::scene::{Fault, Scene, Subject};
+use crate::scene::{Fault, Scene};
 use crate::trace::{Compiled, Dimensions, Sampler, Tracer};
 use glam::{Vec2, Vec3};
-use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// A finished lightmap bake.
@@ -97,76 +95,6 @@ pub fn bake_lightmap(
     let mut baked_lights: Vec<StableId> = baked_lights.collect();
     baked_lights.sort();
     Ok(Lightmap { placements: placements(scene, &atlas), pages, baked_lights, report })
-}
-
-/// A texel to be measured.
-pub(super) struct Site {
-    pub(super) page: u32,
-    /// Row by row within the page.
-    pub(super) index: u32,
-    pub(super) texel: Texel,
-    pub(super) key: u64,
-}
-
-impl Site {
-    /// Memory that it holds, its estimate included [bytes].
-    pub(super) fn memory_bytes(&self) -> usize {
-        size_of::<Self>() + size_of::<Estimate>() + self.texel.heap_bytes()
-    }
-}
-
-/// Every covered texel in an order that keeps neighbours together, and warnings where objects overlap.
-pub(super) fn sites(
-    scene: &Scene,
-    tracer: &Tracer,
-    atlas: &Atlas<'_>,
-    settings: &BakeSettings,
-) -> (Vec<Site>, Vec<BakeWarning>) {
-    let mut sites = Vec::new();
-    let mut overlapping: BTreeMap<Subject, u64> = BTreeMap::new();
-    for page in 0..atlas.pages.len() as u32 {
-        let [width, _] = atlas.pages[page as usize];
-        let fragments = fragments(atlas, page);
-        for group in fragments.chunk_by(|a, b| a.texel == b.texel) {
-            let index = group[0].texel;
-            let (x, y) = (index % width, index / width);
-            let texel = Texel::new(tracer, &atlas.charts, group, [x, y]);
-            if !texel.is_covered() {
-                continue;
-            }
-            let chart = &atlas.charts[group[0].receiver as usize];
-            let instance = &scene.instances[chart.receiver.instance];
-            if texel.coverage > 1.0 + MIN_COVERAGE {
-                *overlapping.entry(Subject::Instance(instance.name.clone())).or_default() += 1;
-            }
-            let key = match settings.layout {
-                Layout::Packed => {
-                    let place = u64::from(y - chart.origin[1]) << 32 | u64::from(x - chart.origin[0]);
-                    key(KeyKind::Texel, settings.transport.seed, instance.id.key(), place)
-                }
-                Layout::Shared { .. } => key(KeyKind::Texel, settings.transport.seed, 0, u64::from(index)),
-            };
-            sites.push(Site { page, index, texel, key });
-        }
-    }
-    let warnings =
-        overlapping.into_iter().map(|(subject, texels)| BakeWarning::OverlappingUv1 { subject, texels }).collect();
-    (sites, warnings)
-}
-
-/// What triangles cover of a page, texel by texel.
-fn fragments(atlas: &Atlas<'_>, page: u32) -> Vec<Fragment> {
-    let size = atlas.pages[page as usize];
-    let mut fragments = Vec::new();
-    for (receiver, chart) in atlas.charts.iter().enumerate().filter(|(_, chart)| chart.page == page) {
-        for triangle in 0..chart.triangle_count() {
-            covered_texels(chart.triangle(triangle), size, |x, y| {
-                fragments.push(Fragment { texel: y * size[0] + x, receiver: receiver as u32, triangle });
-            });
-        }
-    }
-    fragments.sort_unstable();
-    fragments
 }
 
 fn pages(atlas: &Atlas<'_>, sites: &[Site], estimates: &[Estimate]) -> Vec<Page> {

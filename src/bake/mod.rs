@@ -4,7 +4,7 @@
 //!
 //! 1. the scene is compiled for rays; what is at fault is left out and named;
 //! 2. `atlas` gives every object its rectangle of texels;
-//! 3. `raster` finds the texels that each triangle covers, however little of them;
+//! 3. `raster` finds the texels that each triangle covers, however little of them, and `sites` lists them;
 //! 4. `gather` traces paths from the covered part of each texel, in parallel, in independently scrambled replicates
 //!    whose spread is the texel's standard error;
 //! 5. `dilate` fills the texels beside the charts that texture filtering also reads.
@@ -24,6 +24,7 @@ mod progress;
 mod raster;
 mod report;
 mod settings;
+mod sites;
 mod texel;
 mod workers;
 

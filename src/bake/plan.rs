@@ -2,7 +2,8 @@
 
 use super::atlas::Atlas;
 use super::gather::{Estimate, relative_error};
-use super::lightmap::{Site, refuse_what_cannot_be_baked, sites};
+use super::lightmap::refuse_what_cannot_be_baked;
+use super::sites::{Site, sites};
 use super::workers::Workers;
 use super::{BakeError, BakeSettings, BakeWarning, CancelToken};
 use crate::scene::Scene;

@@ -111,8 +111,8 @@ pub enum FaultKind {
         /// The index asked for.
         index: usize,
     },
-    /// Two instances share an id, so their texels could not be told apart.
-    #[error("has the same id as another instance; give each its own name")]
+    /// Two instances or two lights share an id, so they could not be told apart.
+    #[error("has the same id as another; give each its own name")]
     DuplicateId,
     /// A colour outside [0, 1], or not finite.
     #[error("has a base colour outside 0 to 1 and would make light out of nothing; correct the colour")]

@@ -25,8 +25,13 @@ impl Scene {
             }
             blame(Subject::Instance(instance.name.clone()), kinds);
         }
+        let mut ids = HashSet::new();
         for light in &self.lights {
-            blame(Subject::Light(light.name().to_owned()), light.faults());
+            let mut kinds = light.faults();
+            if !ids.insert(light.id()) {
+                kinds.push(FaultKind::DuplicateId);
+            }
+            blame(Subject::Light(light.name().to_owned()), kinds);
         }
         if !is_radiance(self.sky_radiance) {
             blame(Subject::Sky, vec![FaultKind::BadEmission]);
@@ -254,6 +259,7 @@ mod tests {
         assert_fault(|s| s.instances[0].material = 7, "instance \"wall\" refers to material number 7");
         assert_fault(|s| s.instances[0].mesh = 7, "instance \"wall\" refers to mesh number 7");
         assert_fault(|s| s.instances.push(s.instances[0].clone()), "instance \"wall\" has the same id");
+        assert_fault(|s| s.lights.push(s.lights[0].clone()), "light \"lamp\" has the same id");
         assert_fault(|s| s.materials[0].diffuse_albedo.x = 1.5, "material \"grey\" has a base colour outside 0 to 1");
         assert_fault(|s| s.materials[0].emitted_radiance.x = f32::INFINITY, "material \"grey\" has an emission");
         assert_fault(|s| s.sky_radiance.x = -1.0, "the sky has an emission");

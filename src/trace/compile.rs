@@ -71,7 +71,8 @@ impl Sound {
             instances.push(sound);
             lightmaps.push(sound && instance.lightmap.is_some() && kinds.is_empty());
         }
-        let lights = scene.lights.iter().map(|light| light.faults().is_empty()).collect();
+        let mut ids = HashSet::new();
+        let lights = scene.lights.iter().map(|light| ids.insert(light.id()) && light.faults().is_empty()).collect();
         let sky = !faults.iter().any(|fault| fault.subject == Subject::Sky);
         Self { instances, lightmaps, lights, sky }
     }

@@ -45,9 +45,9 @@ impl Talk {
         let error = &report.relative_stderr;
         let balance = report.energy_balance;
         self.say("report");
-        self.say(format_args!("  {} {what}, {} paths, {} rays", report.texels, report.samples, report.rays));
+        self.say(format_args!("  {} {what}, {} samples, {} rays", report.texels, report.samples, report.rays));
         self.say(format_args!(
-            "  {} ({:.1} s of processor time), {per_second:.0} paths per second",
+            "  {} ({:.1} s of processor time), {per_second:.0} samples per second",
             duration(report.wall_seconds),
             report.cpu_seconds
         ));

@@ -30,7 +30,7 @@ fn is_net(points: &[[f32; 2]]) -> Result<(), String> {
 }
 
 fn points(sampler: impl Fn(u64) -> [f32; 4], from: u64, count: u64, axes: [usize; 2]) -> Vec<[f32; 2]> {
-    (from..from + count).map(|index| sampler(index)).map(|numbers| axes.map(|axis| numbers[axis])).collect()
+    (from..from + count).map(sampler).map(|numbers| axes.map(|axis| numbers[axis])).collect()
 }
 
 #[test]
