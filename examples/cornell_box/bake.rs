@@ -1,0 +1,78 @@
+//! The keys, and what the kiln says.
+
+use crate::args::Args;
+use bevy::prelude::*;
+use bevy_kiln::bake::Stage;
+use bevy_kiln::prelude::*;
+
+/// Where things stand.
+#[derive(Resource, Clone, Debug, Default)]
+pub enum Status {
+    #[default]
+    Loading,
+    /// The room is there and as it was loaded.
+    Dark,
+    Baking(Option<BakeProgress>),
+    Lit(BakeFinished),
+    Cancelled,
+    /// What went wrong, as a sentence.
+    Failed(String),
+}
+
+pub fn plugin(app: &mut App) {
+    app.init_resource::<Status>()
+        .add_systems(Update, keys)
+        .add_observer(|at: On<BakeProgress>, mut status: ResMut<Status>| *status = Status::Baking(Some(*at.event())))
+        .add_observer(|done: On<BakeFinished>, mut status: ResMut<Status>| *status = Status::Lit(done.event().clone()))
+        .add_observer(failed);
+}
+
+fn keys(keys: Res<ButtonInput<KeyCode>>, args: Res<Args>, mut status: ResMut<Status>, mut commands: Commands) {
+    let is_baking = matches!(*status, Status::Baking(_));
+    let is_loaded = !matches!(*status, Status::Loading);
+    if keys.just_pressed(KeyCode::KeyB) && is_loaded && !is_baking {
+        start(&args, &mut status, &mut commands);
+    }
+    if keys.just_pressed(KeyCode::Escape) {
+        commands.trigger(CancelBake);
+    }
+    if keys.just_pressed(KeyCode::KeyC) && is_loaded && !is_baking {
+        commands.trigger(ClearLightmaps);
+        *status = Status::Dark;
+    }
+}
+
+/// Asks for a bake; the game runs on.
+pub fn start(args: &Args, status: &mut Status, commands: &mut Commands) {
+    commands.trigger(BakeLightmaps { samples_per_texel: args.spp, density: args.density, ..default() });
+    *status = Status::Baking(None);
+}
+
+fn failed(failed: On<BakeFailed>, mut status: ResMut<Status>) {
+    *status = if failed.cancelled { Status::Cancelled } else { Status::Failed(failed.reason.clone()) };
+}
+
+impl std::fmt::Display for Status {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Loading => write!(f, "loading"),
+            Self::Dark => write!(f, "not baked: only the lamp is seen"),
+            Self::Baking(None) => write!(f, "baking"),
+            Self::Baking(Some(at)) => {
+                let stage = match at.stage {
+                    Stage::Prepare => "preparing",
+                    Stage::Gather => "baking",
+                    Stage::Repair => "filling in",
+                };
+                write!(f, "{stage}: {:.0} %", 100.0 * at.fraction())?;
+                at.relative_stderr.map_or(Ok(()), |error| write!(f, ", error {:.1} %", 100.0 * error))
+            }
+            Self::Lit(done) => {
+                write!(f, "baked: {} texels, {} paths, {:.1} s", done.texels, done.samples, done.seconds)?;
+                done.warnings.iter().try_for_each(|warning| write!(f, "\n{warning}"))
+            }
+            Self::Cancelled => write!(f, "stopped"),
+            Self::Failed(sentence) => write!(f, "{sentence}"),
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! The room from its file, what of it takes part in a bake, and a camera that goes around it.
+
+use crate::bake::Status;
+use bevy::asset::LoadState;
+use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
+use bevy::input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollUnit};
+use bevy::prelude::*;
+use bevy::world_serialization::WorldInstanceReady;
+use bevy_kiln::prelude::*;
+use std::f32::consts::FRAC_PI_2;
+
+const FILE: &str = "scenes/cornell_box.glb";
+
+/// From the file's camera to the middle of the box [m].
+const DISTANCE: f32 = 10.8;
+
+/// How fast arrow keys turn the view [rad/s].
+const KEY_SPEED: f32 = 1.2;
+
+/// How far a drag turns the view [rad/pixel].
+const DRAG_SPEED: f32 = 0.005;
+
+#[derive(Resource)]
+struct Room(Handle<WorldAsset>);
+
+/// A camera that looks at a point from a distance.
+#[derive(Component)]
+struct Orbit {
+    target: Vec3,
+    yaw: f32,
+    pitch: f32,
+    distance: f32,
+}
+
+pub fn plugin(app: &mut App) {
+    app.insert_resource(ClearColor(Color::BLACK))
+        // Bevy adds 80 cd/m² of its own to everything otherwise.
+        .insert_resource(GlobalAmbientLight::NONE)
+        .add_systems(Startup, open)
+        .add_systems(Update, (notice_failure.run_if(resource_exists::<Room>), orbit))
+        .add_observer(ready);
+}
+
+fn open(assets: Res<AssetServer>, mut commands: Commands) {
+    let scene = assets.load(GltfAssetLabel::Scene(0).from_asset(FILE));
+    commands.insert_resource(Room(scene.clone()));
+    // Everything in the file receives a lightmap, but for what `ready` marks otherwise.
+    commands.spawn((WorldAssetRoot(scene), LightmapReceiver::default()));
+    // Colours as they are, so that the screen can be held against a path-traced picture.
+    commands.spawn((
+        Camera3d::default(),
+        Tonemapping::None,
+        DebandDither::Disabled,
+        Orbit { target: Vec3::ZERO, yaw: 0.0, pitch: 0.0, distance: DISTANCE },
+    ));
+}
+
+fn notice_failure(room: Res<Room>, assets: Res<AssetServer>, mut status: ResMut<Status>, mut commands: Commands) {
+    let Some(LoadState::Failed(error)) = assets.get_load_state(&room.0) else { return };
+    let reason = error.to_string();
+    let reason = reason.lines().next().unwrap_or_default();
+    *status = Status::Failed(format!("{FILE} cannot be opened ({reason}); run from a whole clone"));
+    commands.remove_resource::<Room>();
+}
+
+type FileCamera<'a> = (&'a Transform, &'a Projection, &'a mut Camera);
+type OwnCamera<'a> = (&'a mut Transform, &'a mut Projection, &'a mut Orbit);
+
+/// The room is there: takes over the view of the file's camera, and marks the lamp.
+fn ready(
+    _: On<WorldInstanceReady>,
+    names: Query<(Entity, &Name)>,
+    mut theirs: Query<FileCamera, Without<Orbit>>,
+    own: Single<OwnCamera>,
+    mut status: ResMut<Status>,
+    mut commands: Commands,
+) {
+    let (mut transform, mut projection, mut orbit) = own.into_inner();
+    for (view, lens, mut camera) in &mut theirs {
+        camera.is_active = false;
+        *transform = *view;
+        *projection = lens.clone();
+        (orbit.yaw, orbit.pitch, _) = view.rotation.to_euler(EulerRot::YXZ);
+        orbit.target = view.translation + view.forward() * DISTANCE;
+    }
+    // The lamp has no UV1, and its light drowns what falls on it.
+    for (lamp, _) in names.iter().filter(|(_, name)| name.as_str() == "lamp") {
+        commands.entity(lamp).insert(LightBlocker);
+    }
+    *status = Status::Dark;
+}
+
+fn orbit(
+    keys: Res<ButtonInput<KeyCode>>,
+    buttons: Res<ButtonInput<MouseButton>>,
+    motion: Res<AccumulatedMouseMotion>,
+    scroll: Res<AccumulatedMouseScroll>,
+    time: Res<Time>,
+    camera: Single<(&mut Transform, &mut Orbit)>,
+) {
+    let held = |key| if keys.pressed(key) { KEY_SPEED * time.delta_secs() } else { 0.0 };
+    let mut turn = Vec2::new(
+        held(KeyCode::ArrowLeft) - held(KeyCode::ArrowRight),
+        held(KeyCode::ArrowUp) - held(KeyCode::ArrowDown),
+    );
+    if buttons.pressed(MouseButton::Left) {
+        turn -= motion.delta * DRAG_SPEED;
+    }
+    let lines = match scroll.unit {
+        MouseScrollUnit::Line => scroll.delta.y,
+        MouseScrollUnit::Pixel => scroll.delta.y / MouseScrollUnit::SCROLL_UNIT_CONVERSION_FACTOR,
+    };
+    if turn == Vec2::ZERO && lines == 0.0 {
+        return;
+    }
+    let (mut transform, mut orbit) = camera.into_inner();
+    orbit.yaw += turn.x;
+    orbit.pitch = (orbit.pitch + turn.y).clamp(0.01 - FRAC_PI_2, FRAC_PI_2 - 0.01);
+    orbit.distance = (orbit.distance * (-0.1 * lines).exp()).clamp(0.5, 40.0);
+    transform.rotation = Quat::from_euler(EulerRot::YXZ, orbit.yaw, orbit.pitch, 0.0);
+    transform.translation = orbit.target - transform.forward() * orbit.distance;
+}

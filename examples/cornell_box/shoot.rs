@@ -1,0 +1,107 @@
+//! A run without a person: bakes, waits until the lightmaps are on the screen, takes its picture, ends.
+
+use crate::args::Args;
+use crate::bake::{Status, start};
+use crate::overlay::Overlay;
+use bevy::pbr::Lightmap;
+use bevy::prelude::*;
+use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
+use bevy::time::Real;
+use std::path::Path;
+
+/// Frames from the last change of the world to the picture.
+const FRAMES_TO_SETTLE: u32 = 12;
+
+/// Without news for this many frames and this long [s], something hangs. Both, since a renderer on the processor
+/// draws few frames and a fast one draws thousands while a file loads.
+const PATIENCE_FRAMES: u32 = 300;
+const PATIENCE_SECONDS: f32 = 120.0;
+
+/// How far the run is.
+#[derive(Resource, Default)]
+struct Run {
+    step: Step,
+    /// Frames since the last news.
+    frames: u32,
+    /// When that was [s].
+    since: f32,
+}
+
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+enum Step {
+    #[default]
+    Open,
+    Bake,
+    Settle,
+    Capture,
+}
+
+pub fn plugin(app: &mut App) {
+    app.init_resource::<Run>().add_systems(Update, (proceed, give_up).chain());
+}
+
+fn proceed(
+    mut run: ResMut<Run>,
+    mut status: ResMut<Status>,
+    args: Res<Args>,
+    lightmaps: Query<(), With<Lightmap>>,
+    mut overlay: Single<&mut Visibility, With<Overlay>>,
+    mut commands: Commands,
+) {
+    run.frames += 1;
+    let next = match (run.step, &*status) {
+        (_, Status::Failed(sentence)) => return end(&mut commands, Err(sentence.clone())),
+        (Step::Open, Status::Dark) => {
+            start(&args, &mut status, &mut commands);
+            Step::Bake
+        }
+        (Step::Bake, Status::Lit(done)) if lightmaps.count() >= done.entities => {
+            **overlay = Visibility::Hidden;
+            Step::Settle
+        }
+        (Step::Settle, _) if run.frames >= FRAMES_TO_SETTLE => {
+            commands.spawn(Screenshot::primary_window()).observe(captured);
+            Step::Capture
+        }
+        _ => return,
+    };
+    run.step = next;
+    run.frames = 0;
+}
+
+fn give_up(mut run: ResMut<Run>, status: Res<Status>, time: Res<Time<Real>>, mut commands: Commands) {
+    if run.frames == 0 || (run.step == Step::Bake && status.is_changed()) {
+        (run.frames, run.since) = (0, time.elapsed_secs());
+    }
+    if run.frames > PATIENCE_FRAMES && time.elapsed_secs() - run.since > PATIENCE_SECONDS {
+        let what = match run.step {
+            Step::Open => "the scene does not load",
+            Step::Bake => "the bake does not go on",
+            Step::Settle | Step::Capture => "the window is not drawn",
+        };
+        end(&mut commands, Err(format!("{what}; nothing has happened for {PATIENCE_SECONDS} s")));
+    }
+}
+
+fn captured(captured: On<ScreenshotCaptured>, args: Res<Args>, mut commands: Commands) {
+    let Some(path) = &args.screenshot else { return };
+    end(&mut commands, save(&captured.image, path));
+}
+
+fn save(image: &Image, path: &Path) -> Result<(), String> {
+    let failed = |reason: String| format!("{} cannot be written ({reason}); choose another place", path.display());
+    let picture = image.clone().try_into_dynamic().map_err(|error| failed(error.to_string()))?;
+    // Alpha is no part of what a screen shows.
+    picture.to_rgb8().save(path).map_err(|error| failed(error.to_string()))
+}
+
+fn end(commands: &mut Commands, result: Result<(), String>) {
+    let exit = match result {
+        Ok(()) => AppExit::Success,
+        Err(sentence) => {
+            eprintln!("cornell_box: {sentence}");
+            AppExit::error()
+        }
+    };
+    commands.write_message(exit);
+}

@@ -1,0 +1,164 @@
+//! The example's window after a bake, against the core's path-traced picture from the same camera.
+
+use crate::compare::compare;
+use crate::mask::walls;
+use crate::picture::Shown;
+use crate::skip;
+use bevy_kiln::bake::{CancelToken, PictureSettings, render_picture};
+use bevy_kiln::plugin::extract_scene;
+use bevy_kiln::plugin::windowless::open_scene;
+use bevy_kiln::prelude::*;
+use bevy_kiln::scene::{Camera, Scene};
+use bevy_kiln::trace::Transport;
+use glam::DVec3;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// Exposure of a Bevy camera that nobody has touched.
+const EV100: f32 = 9.7;
+
+const SIZE: u32 = 360;
+
+#[test]
+fn the_window_shows_what_the_core_renders() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("shot.png");
+    let size = SIZE.to_string();
+    let arguments = ["--size", &size, "--spp", "64", "--density", "16", "--screenshot"];
+    let Some(mut command) = example_under_a_display() else { return };
+    let output = command.args(arguments).arg(&file).output().unwrap();
+    if lacks_a_renderer(&output) {
+        return skip("there is no graphics driver; .ci/install-renderer.sh installs one");
+    }
+    assert!(output.status.success(), "{}", text(&output));
+    let shot = Shown::from_file(&file);
+    // A window manager may have had other ideas about the size.
+    let size = [shot.width as u32, shot.height as u32];
+    let (scene, camera) = scene();
+    let reference = reference(&scene, &camera, size);
+    let walls = walls(&scene, &camera, [shot.width, shot.height]);
+    let difference = compare(&shot, &reference, &walls);
+    println!("{difference:#?}");
+    if let Err(fault) = difference.verdict() {
+        let kept = keep(&shot, &reference);
+        panic!("{fault}; the pictures are in {}", kept.display());
+    }
+    reject_planted_faults(&shot, &reference, &walls);
+}
+
+/// The checker itself, on the very pictures that it has accepted.
+fn reject_planted_faults(shot: &Shown, reference: &Shown, walls: &[Option<usize>]) {
+    let verdict = |shot: &Shown, walls: &[Option<usize>]| compare(shot, reference, walls).verdict();
+    let brighter = shot.map(|_, value| value * 1.05);
+    assert!(verdict(&brighter, walls).unwrap_err().contains("the means differ"));
+    let tinted = shot.map(|_, value| value * DVec3::new(1.0, 1.0, 0.95));
+    assert!(verdict(&tinted, walls).unwrap_err().contains("the means differ"));
+    // What one wall gains the others lose.
+    let largest = (0..walls.len()).filter_map(|pixel| walls[pixel]).max_by_key(|wall| count(walls, *wall)).unwrap();
+    let share = count(walls, largest) as f64 / walls.iter().flatten().count() as f64;
+    let moved = shot.map(|pixel, value| {
+        let is_it = walls[pixel] == Some(largest);
+        value * if is_it { 1.08 } else { 1.0 - 0.08 * share / (1.0 - share) }
+    });
+    assert!(verdict(&moved, walls).unwrap_err().contains("the walls differ"));
+    // Every wall upside down keeps its mean.
+    let flipped = shot.map(|pixel, value| walls[pixel].map_or(value, |wall| shot.linear[opposite(walls, pixel, wall)]));
+    assert!(verdict(&flipped, walls).unwrap_err().contains("the pictures differ"));
+    assert!(verdict(shot, &vec![None; walls.len()]).unwrap_err().contains("too little"));
+}
+
+fn count(walls: &[Option<usize>], wall: usize) -> usize {
+    walls.iter().filter(|other| **other == Some(wall)).count()
+}
+
+/// The pixel that has as many pixels of its wall before it as this one has after it.
+fn opposite(walls: &[Option<usize>], pixel: usize, wall: usize) -> usize {
+    let rank = walls[..pixel].iter().filter(|other| **other == Some(wall)).count();
+    let same = walls.iter().enumerate().rev().filter(|(_, other)| **other == Some(wall));
+    same.map(|(pixel, _)| pixel).nth(rank).unwrap_or(pixel)
+}
+
+#[test]
+fn what_it_needs_and_does_not_find_ends_in_a_sentence() {
+    let Some(mut command) = example_under_a_display() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("shot.png");
+    let output = command.env("BEVY_ASSET_ROOT", folder.path()).arg("--screenshot").arg(&file).output().unwrap();
+    if lacks_a_renderer(&output) {
+        return skip("there is no graphics driver; .ci/install-renderer.sh installs one");
+    }
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output));
+    assert!(text(&output).contains("cornell_box: scenes/cornell_box.glb cannot be opened"), "{}", text(&output));
+    assert!(!file.exists());
+
+    let without_display =
+        Command::new(example()).env_remove("DISPLAY").arg("--screenshot").arg(&file).output().unwrap();
+    assert_eq!(without_display.status.code(), Some(1), "{}", text(&without_display));
+    assert!(text(&without_display).contains("It needs a display"), "{}", text(&without_display));
+
+    let wrong = Command::new(example()).args(["--spp", "none"]).output().unwrap();
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(text(&wrong).contains("--spp takes a number from 1 to 1000000, not none"), "{}", text(&wrong));
+}
+
+/// The program that `cargo test` has built beside this one.
+fn example() -> PathBuf {
+    let own = std::env::current_exe().unwrap();
+    let profile = own.parent().and_then(Path::parent).unwrap();
+    let path = profile.join("examples").join("cornell_box").with_extension(std::env::consts::EXE_EXTENSION);
+    let hint = "build it first: cargo build --features cli,window --example cornell_box";
+    assert!(path.is_file(), "there is no {}; {hint}", path.display());
+    path
+}
+
+/// The example on the display that there is, or on one of its own.
+fn example_under_a_display() -> Option<Command> {
+    if std::env::var_os("DISPLAY").is_some() {
+        return Some(Command::new(example()));
+    }
+    let has_xvfb = std::env::var_os("PATH")
+        .is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join("xvfb-run").is_file()));
+    if !has_xvfb {
+        skip("there is neither a display nor xvfb-run; .ci/install-renderer.sh installs the latter");
+        return None;
+    }
+    let mut command = Command::new("xvfb-run");
+    command.args(["-a", "-s", "-screen 0 1280x1024x24"]).arg(example());
+    Some(command)
+}
+
+fn lacks_a_renderer(output: &Output) -> bool {
+    !output.status.success() && text(output).contains("Unable to find a GPU")
+}
+
+fn text(output: &Output) -> String {
+    [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes)).concat()
+}
+
+fn scene() -> (Scene, Camera) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/cornell_box.glb");
+    let mut app = open_scene(&path).unwrap();
+    let settings = SceneSettings { emissive: EmissiveUnit::AsDisplayed { ev100: EV100 }, ..SceneSettings::default() };
+    let scene = extract_scene(app.world_mut(), &settings).scene;
+    let camera = scene.cameras.iter().find(|camera| camera.name == "camera").expect("the file's camera").clone();
+    (scene, camera)
+}
+
+fn reference(scene: &Scene, camera: &Camera, [width, height]: [u32; 2]) -> Shown {
+    let transport = Transport { seed: 1, ..Transport::default() };
+    let settings = PictureSettings { transport, width, height, samples_per_pixel: 64, threads: None };
+    let picture = render_picture(scene, camera, &settings, &(), &CancelToken::default()).unwrap();
+    Shown::exposed(&picture, f64::from(EV100))
+}
+
+/// Saves both pictures and their difference, half grey where there is none.
+fn keep(shot: &Shown, reference: &Shown) -> PathBuf {
+    let own = std::env::current_exe().unwrap();
+    let folder = own.ancestors().nth(3).unwrap().join("render-test");
+    std::fs::create_dir_all(&folder).unwrap();
+    shot.save(&folder.join("shot.png"));
+    reference.save(&folder.join("reference.png"));
+    let difference = shot.map(|pixel, value| 0.5 + 2.0 * (value - reference.linear[pixel]));
+    difference.save(&folder.join("difference.png"));
+    folder
+}
