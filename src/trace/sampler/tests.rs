@@ -33,7 +33,7 @@ fn is_net(points: &[[f32; 2]], t: u32) -> Result<(), String> {
 }
 
 fn points(sampler: impl Fn(u64) -> [f32; 4], from: u64, count: u64, axes: [usize; 2]) -> Vec<[f32; 2]> {
-    (from..from + count).map(|index| sampler(index)).map(|numbers| axes.map(|axis| numbers[axis])).collect()
+    (from..from + count).map(sampler).map(|numbers| axes.map(|axis| numbers[axis])).collect()
 }
 
 /// The first direction of a path is of the best: t = 0. The other groups are later dimensions of the sequence.
