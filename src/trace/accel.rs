@@ -8,6 +8,23 @@
 //! The tree drops every box that a ray leaves within 10⁻⁴ of its origin, a length that knows nothing of the scene: in
 //! metres, light would leave a closed room through its corners. All lengths in here are therefore scaled by a power
 //! of two, which rounds nothing, that makes the scene 2³⁰ units large and the dropped length a trillionth of it.
+//!
+//! # Why the eight-way tree
+//!
+//! Million rays per second of processor time, one thread (`cargo bench`, Cornell box of 46 triangles and hall of
+//! 250 000), with the same triangle test in both, obvhs 0.3.3:
+//!
+//! | | CWBVH, medium build | BVH2, medium build | BVH2, slow build |
+//! |---|---|---|---|
+//! | Cornell box, closest, camera | 9.1 | 8.2 | 8.6 |
+//! | Cornell box, closest, diffuse | 6.0 | 4.9 | 5.5 |
+//! | Cornell box, any, camera | 10.5 | 9.0 | 10.7 |
+//! | Cornell box, any, diffuse | 8.1 | 6.6 | 7.9 |
+//! | hall, closest, camera | 2.0 | 2.0 | 2.0 |
+//! | hall, closest, diffuse | 1.15 | 0.84 | 0.86 |
+//!
+//! Rays of a bake are diffuse, and there the eight-way tree is a third faster on a large scene. BVH2 drops no length, so
+//! that it would need no scaling; its slab test rounds alike and needs the same padding.
 
 use super::triangle::{Crossing, ShearedRay, plane_distance};
 use glam::Vec3;

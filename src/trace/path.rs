@@ -15,9 +15,10 @@ use super::transport::{Estimator, Transport};
 use crate::math::Frame;
 use glam::{Vec2, Vec3};
 
-/// Throughput below which roulette begins. At 1 it would end one path in four at each bounce off a 75 % white wall
-/// and trade that noise for speed at a bad rate; far below, paths go on that carry next to nothing.
-const ROULETTE_THROUGHPUT: f32 = 0.25;
+/// Throughput below which roulette begins. Too high, and it ends paths that are worth their time; too low, and paths
+/// go on that carry next to nothing. Efficiency of the Cornell box, 1 / (mean square relative error × processor
+/// seconds), at 64 paths per texel of a 256² map: 5.3 for 1, 6.8 for 0.5, 6.5 for 0.25, 5.7 for 0.1.
+const ROULETTE_THROUGHPUT: f32 = 0.5;
 
 /// The best chance of survival at any bounce. Ends paths between surfaces that absorb nothing.
 const MAX_SURVIVAL: f32 = 0.998;

@@ -30,9 +30,10 @@ impl Dimensions {
     #[inline]
     fn group(self) -> u32 {
         match self {
-            Self::Scatter { vertex } => 3 * vertex,
+            Self::Scatter { vertex: 0 } => 0,
             Self::Start => 1,
-            Self::Light { vertex } => 3 * vertex + 2,
+            Self::Light { vertex } => 2 * vertex + 2,
+            Self::Scatter { vertex } => 2 * vertex + 1,
         }
     }
 }
