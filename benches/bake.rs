@@ -1,6 +1,6 @@
 //! Receiver samples per second of processor time on one thread, a receiver sample being one path from one texel, for
-//! each estimator; and, at the end, what matters: efficiency, 1 / (mean square relative error × processor seconds),
-//! against the reference lightmap of the Cornell box.
+//! each estimator; and, at the end, what matters: efficiency, 1 / (relative RMSE² × processor seconds), the relative
+//! RMSE being the root of the mean square error over the mean, against the reference lightmap of the Cornell box.
 
 mod hall;
 
@@ -24,7 +24,7 @@ const ESTIMATORS: [(&str, Estimator); 3] =
 const REFERENCE_SIZE: u32 = 256;
 
 /// Paths per texel of the bakes that are held against the reference.
-const REFERENCE_SAMPLES: u32 = 64;
+const REFERENCE_SAMPLES: u32 = 256;
 
 fn settings(estimator: Estimator, layout: Layout, samples_per_texel: u32) -> BakeSettings {
     BakeSettings {
@@ -84,18 +84,20 @@ impl Reference {
         Self { texels: texels.collect() }
     }
 
-    /// Mean square relative error of a lightmap, and the number of texels that it was taken over.
+    /// Mean square error of a lightmap over the square of the mean, and the number of texels that it was taken over:
+    /// all but those that are buried.
     fn error(&self, lightmap: &Lightmap) -> (f64, usize) {
         let page = &lightmap.pages[0];
         let mean = self.texels.iter().map(|texel| texel.0).sum::<f64>() / self.texels.len() as f64;
         let lit = |(index, (value, stderr)): (usize, &(f64, f64))| {
             // The reference's own error, known on average, is taken off.
             let off = PI * f64::from(page.raw[index].y) - value;
-            let is_lit = *value > 1e-2 * mean && page.coverage[index] > 0.99;
-            is_lit.then_some((off * off - stderr * stderr) / (value * value))
+            let is_lit = *value > 1e-3 * mean && page.coverage[index] > 0.99;
+            is_lit.then_some([off * off - stderr * stderr, *value])
         };
-        let squares: Vec<f64> = self.texels.iter().enumerate().filter_map(lit).collect();
-        (squares.iter().sum::<f64>() / squares.len() as f64, squares.len())
+        let lit: Vec<[f64; 2]> = self.texels.iter().enumerate().filter_map(lit).collect();
+        let mean = |of: usize| lit.iter().map(|texel| texel[of]).sum::<f64>() / lit.len() as f64;
+        (mean(0) / mean(1).powi(2), lit.len())
     }
 }
 
