@@ -13,6 +13,7 @@ use bevy_kiln::trace::Transport;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Exposure of a Bevy camera that nobody has touched.
 const EV100: f32 = 9.7;
@@ -122,8 +123,11 @@ fn example_under_a_display() -> Option<Command> {
         skip("there is neither a display nor xvfb-run; .ci/install-renderer.sh installs the latter");
         return None;
     }
+    // Two that start at once and look for a free number find the same one; so each begins elsewhere.
+    static STARTED: AtomicU32 = AtomicU32::new(0);
+    let number = 100 + 8 * (std::process::id() % 1000) + STARTED.fetch_add(1, Ordering::Relaxed);
     let mut command = Command::new("xvfb-run");
-    command.args(["-a", "-s", "-screen 0 1280x1024x24"]).arg(example());
+    command.args(["-a", "-n", &number.to_string(), "-s", "-screen 0 1280x1024x24"]).arg(example());
     Some(command)
 }
 
