@@ -11,6 +11,7 @@ use bevy_kiln::prelude::*;
 use bevy_kiln::scene::{Camera, Scene};
 use bevy_kiln::trace::Transport;
 use glam::DVec3;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -47,6 +48,20 @@ fn the_window_shows_what_the_core_renders() {
     reject_planted_faults(&shot, &reference, &walls);
 }
 
+/// The pair that the README shows: the example's screenshot and `kiln render` from the same camera.
+#[test]
+fn the_pictures_in_the_repository_agree() {
+    let pictures = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/pictures");
+    let [shot, reference] = ["bevy", "reference"].map(|of| pictures.join(format!("cornell_box_{of}.png")));
+    let (shot, reference) = (Shown::from_file(&shot), Shown::from_file(&reference));
+    let (scene, camera) = scene();
+    let walls = walls(&scene, &camera, [shot.width, shot.height]);
+    let difference = compare(&shot, &reference, &walls);
+    println!("{difference:#?}");
+    difference.verdict().unwrap();
+    reject_planted_faults(&shot, &reference, &walls);
+}
+
 /// The checker itself, on the very pictures that it has accepted.
 fn reject_planted_faults(shot: &Shown, reference: &Shown, walls: &[Option<usize>]) {
     let verdict = |shot: &Shown, walls: &[Option<usize>]| compare(shot, reference, walls).verdict();
@@ -63,7 +78,7 @@ fn reject_planted_faults(shot: &Shown, reference: &Shown, walls: &[Option<usize>
     });
     assert!(verdict(&moved, walls).unwrap_err().contains("the walls differ"));
     // Every wall upside down keeps its mean.
-    let flipped = shot.map(|pixel, value| walls[pixel].map_or(value, |wall| shot.linear[opposite(walls, pixel, wall)]));
+    let flipped = upside_down(shot, walls);
     assert!(verdict(&flipped, walls).unwrap_err().contains("the pictures differ"));
     assert!(verdict(shot, &vec![None; walls.len()]).unwrap_err().contains("too little"));
 }
@@ -72,11 +87,19 @@ fn count(walls: &[Option<usize>], wall: usize) -> usize {
     walls.iter().filter(|other| **other == Some(wall)).count()
 }
 
-/// The pixel that has as many pixels of its wall before it as this one has after it.
-fn opposite(walls: &[Option<usize>], pixel: usize, wall: usize) -> usize {
-    let rank = walls[..pixel].iter().filter(|other| **other == Some(wall)).count();
-    let same = walls.iter().enumerate().rev().filter(|(_, other)| **other == Some(wall));
-    same.map(|(pixel, _)| pixel).nth(rank).unwrap_or(pixel)
+/// The pixels of each wall in the opposite order.
+fn upside_down(shot: &Shown, walls: &[Option<usize>]) -> Shown {
+    let mut of_walls: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (pixel, wall) in walls.iter().enumerate() {
+        of_walls.entry(wall.unwrap_or(usize::MAX)).or_default().push(pixel);
+    }
+    let mut flipped = shot.clone();
+    for pixels in of_walls.values() {
+        for (&to, &from) in pixels.iter().zip(pixels.iter().rev()) {
+            flipped.linear[to] = shot.linear[from];
+        }
+    }
+    flipped
 }
 
 #[test]
