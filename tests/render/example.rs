@@ -70,8 +70,9 @@ fn reject_planted_faults(shot: &Shown, reference: &Shown, walls: &[Option<usize>
     let tinted = shot.map(|_, value| value * DVec3::new(1.0, 1.0, 0.95));
     assert!(verdict(&tinted, walls).unwrap_err().contains("the means differ"));
     // What one wall gains the others lose.
-    let largest = (0..walls.len()).filter_map(|pixel| walls[pixel]).max_by_key(|wall| count(walls, *wall)).unwrap();
-    let share = count(walls, largest) as f64 / walls.iter().flatten().count() as f64;
+    let of_walls = pixels_of_walls(walls);
+    let (&largest, pixels) = of_walls.iter().max_by_key(|(_, pixels)| pixels.len()).unwrap();
+    let share = pixels.len() as f64 / walls.iter().flatten().count() as f64;
     let moved = shot.map(|pixel, value| {
         let is_it = walls[pixel] == Some(largest);
         value * if is_it { 1.08 } else { 1.0 - 0.08 * share / (1.0 - share) }
@@ -83,18 +84,18 @@ fn reject_planted_faults(shot: &Shown, reference: &Shown, walls: &[Option<usize>
     assert!(verdict(shot, &vec![None; walls.len()]).unwrap_err().contains("too little"));
 }
 
-fn count(walls: &[Option<usize>], wall: usize) -> usize {
-    walls.iter().filter(|other| **other == Some(wall)).count()
+fn pixels_of_walls(walls: &[Option<usize>]) -> BTreeMap<usize, Vec<usize>> {
+    let mut of_walls: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (pixel, wall) in walls.iter().enumerate().filter_map(|(pixel, wall)| Some((pixel, (*wall)?))) {
+        of_walls.entry(wall).or_default().push(pixel);
+    }
+    of_walls
 }
 
 /// The pixels of each wall in the opposite order.
 fn upside_down(shot: &Shown, walls: &[Option<usize>]) -> Shown {
-    let mut of_walls: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for (pixel, wall) in walls.iter().enumerate() {
-        of_walls.entry(wall.unwrap_or(usize::MAX)).or_default().push(pixel);
-    }
     let mut flipped = shot.clone();
-    for pixels in of_walls.values() {
+    for pixels in pixels_of_walls(walls).values() {
         for (&to, &from) in pixels.iter().zip(pixels.iter().rev()) {
             flipped.linear[to] = shot.linear[from];
         }
