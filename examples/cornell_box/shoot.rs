@@ -7,15 +7,20 @@ use bevy::pbr::Lightmap;
 use bevy::prelude::*;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use bevy::time::Real;
+use bevy::winit::{UpdateMode, WinitSettings};
 use std::path::Path;
+use std::time::Duration;
 
 /// Frames from the last change of the world to the picture.
 const FRAMES_TO_SETTLE: u32 = 12;
 
 /// Without news for this many frames and this long [s], something hangs. Both, since a renderer on the processor
 /// draws few frames and a fast one draws thousands while a file loads.
-const PATIENCE_FRAMES: u32 = 300;
+const PATIENCE_FRAMES: u32 = 100;
 const PATIENCE_SECONDS: f32 = 120.0;
+
+/// Between frames while the bake runs: nobody looks on, and where the processor draws, frames would slow the bake.
+const PAUSE: Duration = Duration::from_millis(500);
 
 /// How far the run is.
 #[derive(Resource, Default)]
@@ -37,7 +42,15 @@ enum Step {
 }
 
 pub fn plugin(app: &mut App) {
-    app.init_resource::<Run>().add_systems(Update, (proceed, give_up).chain());
+    app.init_resource::<Run>().add_systems(Update, (proceed, pace, give_up).chain());
+}
+
+fn pace(run: Res<Run>, mut winit: ResMut<WinitSettings>) {
+    let mode = match run.step {
+        Step::Bake => UpdateMode::reactive_low_power(PAUSE),
+        Step::Open | Step::Settle | Step::Capture => UpdateMode::Continuous,
+    };
+    *winit = WinitSettings { focused_mode: mode, unfocused_mode: mode };
 }
 
 fn proceed(

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 const WALLS: f64 = 0.02;
 
 /// Largest mean difference of the squares' means. Contains the noise of both pictures and what texels blur.
-const SQUARES: f64 = 0.03;
+const SQUARES: f64 = 0.02;
 
 /// Side of a square [pixels].
 const SQUARE: usize = 16;
@@ -25,8 +25,8 @@ const LEAST_COVERED: f64 = 0.6;
 /// As many walls must be compared: floor, ceiling, back, left, right, and two sides and the top of the blocks.
 const LEAST_WALLS: usize = 8;
 
-/// A channel darker than this on a whole wall is below what eight bits resolve to a percent.
-const LEAST_MEAN: f64 = 0.02;
+/// A wall or a square that is darker than this is left out: eight bits have too few steps there.
+const LEAST_MEAN: f64 = 0.005;
 
 /// What eight bits hold; a wall pixel above is left out with those around it.
 const CLIPPED: f64 = 0.9;
@@ -60,11 +60,14 @@ impl Sum {
         self.reference += reference;
     }
 
-    /// Per channel, or 0 where it is too dark to tell.
     fn difference(&self) -> DVec3 {
-        let mean = self.reference / self.pixels;
-        let difference = (self.shot - self.reference) / self.reference.max(DVec3::splat(1e-9));
-        DVec3::select(mean.cmpge(DVec3::splat(LEAST_MEAN)), difference, DVec3::ZERO)
+        (self.shot - self.reference) / self.reference
+    }
+
+    /// The same, but 0 where it is too dark to tell.
+    fn visible_difference(&self) -> DVec3 {
+        let is_seen = (self.reference / self.pixels).cmpge(DVec3::splat(LEAST_MEAN));
+        DVec3::select(is_seen, self.difference(), DVec3::ZERO)
     }
 }
 
@@ -97,9 +100,9 @@ pub fn compare(shot: &Shown, reference: &Shown, walls: &[Option<usize>]) -> Diff
     Difference {
         covered: all.pixels / picture,
         overall: all.difference(),
-        walls: of_walls.iter().map(|sum| sum.difference().abs().element_sum() / 3.0 * sum.pixels).sum::<f64>()
+        walls: of_walls.iter().map(|sum| sum.visible_difference().abs().element_sum() / 3.0 * sum.pixels).sum::<f64>()
             / of_walls.iter().map(|sum| sum.pixels).sum::<f64>(),
-        by_wall: of_walls.iter().map(|sum| largest(sum.difference())).collect(),
+        by_wall: of_walls.iter().map(|sum| largest(sum.visible_difference())).collect(),
         squares: of_squares.iter().map(|d| d.abs()).sum::<f64>() / of_squares.len() as f64,
     }
 }
@@ -120,12 +123,16 @@ impl Difference {
         let faults = [
             (self.covered < LEAST_COVERED, "too little was compared"),
             (self.by_wall.len() < LEAST_WALLS, "too few walls were compared"),
-            (self.overall.abs().max_element() >= WALLS, "the means differ"),
-            (self.walls >= WALLS, "the walls differ"),
-            // Written so that a NaN fails.
-            (!(self.squares < SQUARES), "the pictures differ"),
+            (!self.overall.abs().cmplt(DVec3::splat(WALLS)).all(), "the means differ"),
+            (!is_below(self.walls, WALLS), "the walls differ"),
+            (!is_below(self.squares, SQUARES), "the pictures differ"),
         ];
         let faults: Vec<&str> = faults.into_iter().filter(|(is_fault, _)| *is_fault).map(|(_, what)| what).collect();
         if faults.is_empty() { Ok(()) } else { Err(format!("{}: {self:?}", faults.join(", "))) }
     }
+}
+
+/// Not for what is no number.
+fn is_below(value: f64, limit: f64) -> bool {
+    value.is_finite() && value < limit
 }

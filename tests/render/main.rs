@@ -1,6 +1,7 @@
 //! What Bevy puts on a screen, against what the core says that it should be. Needs a renderer (Mesa's on the
 //! processor will do) and a display (Xvfb will do); where there is none the tests say so and pass, but on the CI
 //! machine (`CI=true`) they fail.
+#![cfg(all(feature = "cli", feature = "window"))]
 
 mod compare;
 mod example;
