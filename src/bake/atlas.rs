@@ -12,9 +12,6 @@ use crate::trace::{Receiver, Tracer};
 use etagere::{AtlasAllocator, size2};
 use glam::{DVec2, Vec2};
 
-/// Largest page that a person may ask for [texels].
-pub(super) const MAX_PAGE_SIZE: u32 = 8192;
-
 /// Largest page of a packed atlas [texels]: on a larger one the 16 bits per coordinate that Bevy keeps of a lightmap's
 /// rectangle would be off by more than a sixteenth of a texel.
 const MAX_PACKED_SIZE: u32 = 4096;

@@ -4,6 +4,9 @@ use super::BakeError;
 use crate::trace::Transport;
 use std::num::NonZeroUsize;
 
+/// Largest shared map that may be asked for [texels].
+const MAX_SHARED_SIZE: u32 = 8192;
+
 /// Where the texels of a lightmap go.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Layout {
@@ -55,7 +58,7 @@ impl BakeSettings {
             return refuse("density", "it must be a positive number of texels per metre");
         }
         match self.layout {
-            Layout::Shared { size } if size == 0 || size > super::atlas::MAX_PAGE_SIZE => {
+            Layout::Shared { size } if size == 0 || size > MAX_SHARED_SIZE => {
                 refuse("size", "a shared map is 1 to 8192 texels wide")
             }
             _ => Ok(()),

@@ -46,6 +46,13 @@ impl Compiled {
     }
 }
 
+impl Tracer {
+    /// Compiles what is sound in a scene; [`Scene::validate`] tells what is not.
+    pub fn new(scene: &Scene) -> Self {
+        Compiled::new(scene).tracer
+    }
+}
+
 /// Which parts of a scene can be used.
 struct Sound {
     instances: Vec<bool>,

@@ -62,6 +62,24 @@ impl PathStart {
 }
 
 impl Tracer {
+    /// A start of paths on a triangle, at these weights of its second and third vertex, on the side of `normal`, the
+    /// unit normal that receives.
+    pub(crate) fn start_on_triangle(&self, triangle: u32, barycentric: [f32; 2], normal: Vec3) -> PathStart {
+        let shape = &self.triangles[triangle as usize];
+        PathStart::new(shape, shape.position(barycentric), normal)
+    }
+
+    /// A start of paths at a point of the world. Within 1e-5 of the scene's extent from a surface, on the side that
+    /// `normal` points to, the point counts as lying on it.
+    pub(crate) fn start_at(&self, position: Vec3, normal: Vec3) -> PathStart {
+        let reach = 1e-5 * self.extent;
+        let above = position + normal * reach;
+        match self.accel.closest(above, -normal, 2.0 * reach) {
+            Some(hit) => self.start_on_triangle(hit.triangle, hit.barycentric, normal),
+            None => PathStart::free(position, normal),
+        }
+    }
+
     /// One sample of E/π at a start [cd/m²]. Adds the rays that it traced to `rays`.
     pub(crate) fn diffuse_radiance(
         &self,

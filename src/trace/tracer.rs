@@ -1,11 +1,8 @@
 //! A scene compiled for rays.
 
 use super::accel::Accel;
-use super::compile::Compiled;
 use super::light::Emitters;
-use super::path::PathStart;
 use super::surface::TriangleShape;
-use crate::scene::Scene;
 use glam::{DVec3, Vec3};
 
 /// No emitter.
@@ -58,11 +55,6 @@ pub(crate) struct Receiver {
 }
 
 impl Tracer {
-    /// Compiles what is sound in a scene; [`Scene::validate`] tells what is not.
-    pub fn new(scene: &Scene) -> Self {
-        Compiled::new(scene).tracer
-    }
-
     /// The nearest surface that a ray from `origin` [m] in the unit `direction` meets, from either side.
     pub fn closest_hit(&self, origin: Vec3, direction: Vec3) -> Option<RayHit> {
         let hit = self.accel.closest(origin, direction, f32::INFINITY)?;
@@ -130,23 +122,5 @@ impl Tracer {
                 })
                 .sum()
         })
-    }
-
-    /// A start of paths on a triangle, at these weights of its second and third vertex, on the side of `normal`, the
-    /// unit normal that receives.
-    pub(crate) fn start_on_triangle(&self, triangle: u32, barycentric: [f32; 2], normal: Vec3) -> PathStart {
-        let shape = &self.triangles[triangle as usize];
-        PathStart::new(shape, shape.position(barycentric), normal)
-    }
-
-    /// A start of paths at a point of the world. Within 1e-5 of the scene's extent from a surface, on the side that
-    /// `normal` points to, the point counts as lying on it.
-    pub(crate) fn start_at(&self, position: Vec3, normal: Vec3) -> PathStart {
-        let reach = 1e-5 * self.extent;
-        let above = position + normal * reach;
-        match self.accel.closest(above, -normal, 2.0 * reach) {
-            Some(hit) => self.start_on_triangle(hit.triangle, hit.barycentric, normal),
-            None => PathStart::free(position, normal),
-        }
     }
 }
