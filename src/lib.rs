@@ -59,3 +59,8 @@ pub mod prelude {
     };
     pub use crate::plugin::{BakedFolder, BakedLightmaps, KilnId, KilnPlugin, KilnSystems};
 }
+
+/// The README's code, so that it stays true.
+#[cfg(all(doctest, feature = "bake", feature = "window"))]
+#[doc = include_str!("../README.md")]
+struct Readme;
