@@ -62,6 +62,21 @@ fn a_light_that_blocks_nothing_in_a_closed_room() {
     assert_agreement(&lit_room(0.6, 10.0), &points, [1024, 1024, 16384]);
 }
 
+/// Flush with the ceiling, where rounding decides which of the two a ray meets first.
+#[test]
+fn a_light_in_the_plane_of_the_ceiling() {
+    let side = || grey(0.5);
+    let scene = SceneBuilder::default()
+        .room(Vec3::ZERO, Vec3::new(4.0, 3.3, 4.0), [side(), side(), side(), side(), side(), side()])
+        .rect_light("lamp", Vec3::new(1.7, 3.3, 2.2), Vec3::NEG_Y, Vec2::new(1.3, 1.1), Vec3::ONE)
+        .build();
+    let points = on_walls(Vec3::ZERO, Vec3::new(4.0, 3.3, 4.0), 2);
+    assert_agreement(&scene, &points, [1024, 1024, 8192]);
+    let total = runs(&scene, &points[8..12], 1024, Estimator::Mis).mean();
+    let direct = std::f64::consts::PI * 1.43 / 16.0;
+    assert!(total > 0.5 * direct, "the floor gets {total} of a flux of {direct} per square metre");
+}
+
 #[test]
 fn two_lamps_a_sky_and_a_blocker() {
     let double_sided = bevy_kiln::scene::Material { double_sided: true, ..glowing(0.3, 5.0) };

@@ -2,7 +2,7 @@
 
 use super::accel::Accel;
 use super::light::{Emitter, EmitterShape, Emitters};
-use super::surface::{Placement, TriangleShape};
+use super::surface::{Placement, TriangleShape, position_error};
 use super::tracer::{NOT_EMISSIVE, Receiver, Surface, Tracer};
 use crate::scene::{Fault, Instance, Light, Mesh, RectLight, Scene, Subject};
 use glam::Vec3;
@@ -150,14 +150,19 @@ impl World {
         let (x, y) = (0.5 * light.width, 0.5 * light.height);
         let [corner, right, top] =
             [Vec3::new(-x, -y, 0.0), Vec3::new(x, -y, 0.0), Vec3::new(-x, y, 0.0)].map(|p| placement.position(p));
+        let edges = [right - corner, top - corner];
+        let normal = placement.normal(Vec3::NEG_Z);
+        let error = position_error([corner, right, top, right + edges[1]]);
+        // A lamp set flush into a ceiling must lie before it, not half behind it by rounding.
+        let corner = corner + normal * error.dot(normal.abs());
         self.free.push(self.emitters.len() as u32);
         self.emitters.push(Emitter {
-            shape: EmitterShape::Rectangle { corner, edges: [right - corner, top - corner] },
-            normal: placement.normal(Vec3::NEG_Z),
+            shape: EmitterShape::Rectangle { corner, edges },
+            normal,
             radiance: light.radiance,
             double_sided: false,
             inverse_range: light.range.map_or(0.0, f32::recip),
-            error: Vec3::ZERO,
+            error,
         });
     }
 

@@ -82,11 +82,15 @@ impl Placement {
         let vertices = if self.is_mirrored() { [a, c, b] } else { [a, b, c] };
         let [a, b, c] = vertices.map(Vec3::as_dvec3);
         let normal = (b - a).cross(c - a).try_normalize()?.as_vec3();
-        let largest = vertices.iter().fold(Vec3::ZERO, |size, vertex| size.max(vertex.abs()));
         let product_error = local.iter().fold(DVec3::ZERO, |error, vertex| error.max(self.product_error(*vertex)));
-        let error = 16.0 * f32::EPSILON * largest + product_error.as_vec3();
+        let error = position_error(vertices) + product_error.as_vec3();
         normal.is_finite().then_some(TriangleShape { vertices, normal, error })
     }
+}
+
+/// Bound on the error of each coordinate of a point computed among these, the transform's part aside [m].
+pub(super) fn position_error<const N: usize>(vertices: [Vec3; N]) -> Vec3 {
+    16.0 * f32::EPSILON * vertices.iter().fold(Vec3::ZERO, |size, vertex| size.max(vertex.abs()))
 }
 
 impl TriangleShape {
