@@ -8,7 +8,7 @@ use glb::Glb;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use tempfile::TempDir;
+use temp_dir::TempDir;
 
 fn data(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(file)
@@ -47,7 +47,7 @@ fn assert_fails(output: &Output, code: i32, sentence: &str) {
 
 /// Spoils the Cornell box and bakes it.
 fn bake_spoilt(spoil: impl FnOnce(&mut Glb)) -> (TempDir, Output) {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let mut glb = Glb::read(&data("cornell.glb"));
     spoil(&mut glb);
     let scene = folder.path().join("spoilt.glb");
@@ -77,7 +77,7 @@ fn assert_left_out(spoilt: &(TempDir, Output), sentence: &str) {
 
 #[test]
 fn a_sound_bake_writes_a_whole_folder_and_ends_with_its_json() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let output = bake(&data("cornell.glb"), &folder.path().join("out"));
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let json = last_json(&output);
@@ -103,7 +103,7 @@ fn a_sound_bake_writes_a_whole_folder_and_ends_with_its_json() {
 
 #[test]
 fn without_json_a_person_reads_the_plan_and_the_report_on_standard_output() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let scene = data("cornell.glb");
     let mut command = kiln();
     command.arg("bake").arg(scene).arg("-o").arg(folder.path()).args(["--density", "2", "--spp", "16"]);
@@ -155,7 +155,7 @@ fn the_order_of_meshes_and_nodes_in_the_file_does_not_matter() {
 
 #[test]
 fn scenes_that_cannot_be_opened() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let out = folder.path().join("out");
     assert_fails(&bake(Path::new("no/such.glb"), &out), 1, "there is no file no/such.glb");
     assert_fails(&bake(&data("README.md"), &out), 1, "README.md is no scene");
@@ -205,7 +205,7 @@ fn a_light_without_area_is_named_and_leaves_the_scene_dark() {
 
 #[test]
 fn a_scene_of_bevys_own_kind_is_read_and_its_light_without_area_is_named() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let scene = folder.path().join("lamp.scn.ron");
     let measure = |width: &str| {
         let lamp = r#"(resources: {}, entities: { 4294967295: (components: {
@@ -282,7 +282,7 @@ fn wrong_arguments_and_what_is_not_there_yet() {
 
 #[test]
 fn a_light_meter_answers_in_the_order_of_its_rows() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let points = folder.path().join("points.csv");
     // Other order of columns, a column of the asker's own, and one of the answer's that is to be replaced.
     std::fs::write(&points, "name,nx,ny,nz,x,y,z,e_r\nfar,0,1,0,1.4,0,0.9,7\nunder,0,2,0,0,0,0,8\n").unwrap();
@@ -311,7 +311,7 @@ fn a_light_meter_answers_in_the_order_of_its_rows() {
 
 #[test]
 fn bad_tables_are_refused_by_row() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let points = folder.path().join("points.csv");
     for (table, sentence) in [
         ("x,y,z,nx,ny\n0,0,0,0,1\n", "no column \"nz\""),
@@ -330,7 +330,7 @@ fn bad_tables_are_refused_by_row() {
 
 #[test]
 fn a_picture_is_written_and_a_missing_camera_is_named() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let picture = folder.path().join("picture.png");
     let scene = data("cornell.glb");
     let mut command = kiln();
@@ -345,7 +345,7 @@ fn a_picture_is_written_and_a_missing_camera_is_named() {
 #[test]
 fn ctrl_c_stops_in_good_order() {
     use std::io::{BufRead, BufReader};
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let out = folder.path().join("out");
     let mut command = kiln();
     command.arg("bake").arg(data("cornell.glb")).arg("-o").arg(&out).args(["--spp", "4000000"]);

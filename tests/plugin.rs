@@ -349,7 +349,7 @@ fn a_rectangular_light_has_bevys_radiance() {
 
 #[test]
 fn the_game_and_the_command_line_bake_the_same_bits_and_a_shipped_game_shows_them() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_kiln"));
     command.arg("bake").arg(data("cornell.glb")).arg("-o").arg(folder.path().join("baked"));
     command.args(["--layout", "shared", "--size", "32", "--spp", "16", "--emissive", "nits", "--format", "rgba16f"]);

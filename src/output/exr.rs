@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn a_reader_of_plain_pictures_sees_the_repaired_layer() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temp_dir::TempDir::new().unwrap();
         let path = folder.path().join("page.exr");
         let page = page(5, 4);
         std::fs::write(&path, bytes(|to| write_page(&page, to))).unwrap();

@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn a_folder_holds_maps_previews_and_manifest() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temp_dir::TempDir::new().unwrap();
         let dir = folder.path().join("baked/room");
         let lightmap = lightmap(vec![page(8, 4), page(4, 16)]);
         let written = write_lightmap(&lightmap, "room.glb", &dir, OutputFormat::Rgba16f).unwrap();
@@ -151,7 +151,7 @@ mod tests {
 
     #[test]
     fn exr_comes_besides_the_usual_maps() {
-        let (folder, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let (folder, other) = (temp_dir::TempDir::new().unwrap(), temp_dir::TempDir::new().unwrap());
         let lightmap = lightmap(vec![page(8, 4)]);
         write_lightmap(&lightmap, "a", folder.path(), OutputFormat::Exr).unwrap();
         write_lightmap(&lightmap, "a", other.path(), OutputFormat::Rgb9e5).unwrap();
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_reported() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temp_dir::TempDir::new().unwrap();
         let lightmap = lightmap(vec![page(4, 4), strange_page()]);
         let write = |format| write_lightmap(&lightmap, "a", folder.path(), format).unwrap();
         let shared = BakeWarning::Clamped { texels: 4, format: "rgb9e5", limit: 65408.0 };
@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_write_that_fails_leaves_the_old_bake_whole() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temp_dir::TempDir::new().unwrap();
         let dir = folder.path();
         write_lightmap(&lightmap(vec![page(8, 4)]), "old", dir, OutputFormat::Rgb9e5).unwrap();
         let old: Vec<_> = names(dir).into_iter().map(|name| (fs::read(dir.join(&name)).unwrap(), name)).collect();
@@ -206,7 +206,7 @@ mod tests {
 
     #[test]
     fn a_file_in_the_place_of_the_folder_is_named() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temp_dir::TempDir::new().unwrap();
         let dir = folder.path().join("baked");
         fs::write(&dir, "kept").unwrap();
         let result = write_lightmap(&lightmap(vec![page(4, 4)]), "a", &dir, OutputFormat::Rgb9e5);

@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn the_name_says_the_format() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temp_dir::TempDir::new().unwrap();
         for (name, start) in [("deep/er/a.png", &b"\x89PNG"[..]), ("b.EXR", &[0x76, 0x2f, 0x31, 0x01])] {
             let path = folder.path().join(name);
             write_picture(&picture(), &path, 0.0).unwrap();
@@ -83,7 +83,7 @@ mod tests {
 
     #[test]
     fn what_makes_no_picture_is_refused_by_name() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temp_dir::TempDir::new().unwrap();
         let path = folder.path().join("a.png");
         let error = write_picture(&picture(), &path, f32::INFINITY).unwrap_err();
         assert_eq!(error, OutputError::Exposure { path: path.clone(), ev100: f32::INFINITY });

@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_file_is_replaced_and_nothing_stays_beside_it() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temp_dir::TempDir::new().unwrap();
         let place = folder.path().join("a.txt");
         assert_eq!(write_text(&place, "old"), Ok(place.clone()));
         let staged = Staged::write(&place, |file| file.write_all(b"new")).unwrap();
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn a_failing_write_leaves_the_old_file_alone() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temp_dir::TempDir::new().unwrap();
         let place = folder.path().join("a.txt");
         write_text(&place, "old").unwrap();
         let failed = Staged::write(&place, |file| {
@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn a_place_that_cannot_be_taken_leaves_nothing_beside_it() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temp_dir::TempDir::new().unwrap();
         let place = folder.path().join("a.txt");
         fs::create_dir(&place).unwrap();
         fs::write(place.join("inside"), "kept").unwrap();
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn folders_are_made_where_missing() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temp_dir::TempDir::new().unwrap();
         let deep = folder.path().join("a/b/c");
         assert!(matches!(write_text(&deep.join("x"), "text"), Err(OutputError::Write { .. })));
         make_folder(&deep).unwrap();
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn an_unwritable_folder_is_named() {
         use std::os::unix::fs::PermissionsExt;
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temp_dir::TempDir::new().unwrap();
         let locked = folder.path().join("locked");
         fs::create_dir(&locked).unwrap();
         fs::set_permissions(&locked, fs::Permissions::from_mode(0o555)).unwrap();

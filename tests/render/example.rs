@@ -23,7 +23,7 @@ const SIZE: u32 = 360;
 
 #[test]
 fn the_window_shows_what_the_core_renders() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let file = folder.path().join("shot.png");
     let size = SIZE.to_string();
     let arguments = ["--size", &size, "--spp", "64", "--density", "16", "--screenshot"];
@@ -106,7 +106,7 @@ fn upside_down(shot: &Shown, walls: &[Option<usize>]) -> Shown {
 #[test]
 fn what_it_needs_and_does_not_find_ends_in_a_sentence() {
     let Some(mut command) = example_under_a_display() else { return };
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let file = folder.path().join("shot.png");
     let output = command.env("BEVY_ASSET_ROOT", folder.path()).arg("--screenshot").arg(&file).output().unwrap();
     if lacks_a_renderer(&output) {
