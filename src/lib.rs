@@ -15,9 +15,9 @@
 //! | `trace` | how light moves: rays, scattering, light sampling, paths |
 //! | `bake` | what is measured: lightmaps, light meters, pictures; progress, plan and report |
 //! | `output` | encoders, and writing a whole folder safely |
-//! | [`plugin`] | Bevy: components, extraction, the bake beside the running game, display |
+//! | `plugin` | Bevy: components, extraction, the bake beside the running game, display |
 //!
-//! Each uses only those above it. Start at [`plugin`] for a game and at `bake` for the tracer alone.
+//! Each uses only those above it. Start at `plugin` for a game and at `bake` for the tracer alone.
 //!
 //! # Features
 //!
