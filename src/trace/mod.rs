@@ -1,6 +1,6 @@
 //! How light moves: a scene compiled for rays and the estimators on it. Has never heard of lightmaps.
 //!
-//! [`Transport`] says how light is followed; what asks for light is in [`bake`](crate::bake).
+//! [`Transport`] says how light is followed; what asks for it lies to the right.
 
 mod accel;
 mod bsdf;
