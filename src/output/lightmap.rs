@@ -111,19 +111,10 @@ fn check(lightmap: &Lightmap, dir: &Path) -> Result<(), OutputError> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_pages::{lightmap, page, strange_page};
+    use super::super::test_pages::{lightmap, names, page, strange_page};
     use super::*;
     use crate::artefact::StableId;
     use std::fs;
-
-    fn names(folder: &Path) -> Vec<String> {
-        let mut names: Vec<String> = fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
-            .collect();
-        names.sort();
-        names
-    }
 
     #[test]
     fn a_folder_holds_maps_previews_and_manifest() {

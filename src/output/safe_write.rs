@@ -93,19 +93,11 @@ fn create_beside(place: &Path) -> io::Result<(PathBuf, File)> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::test_pages::names;
     use super::*;
 
     fn write_text(place: &Path, text: &str) -> Result<PathBuf, OutputError> {
         Staged::write(place, |file| file.write_all(text.as_bytes()))?.place()
-    }
-
-    fn names(folder: &Path) -> Vec<String> {
-        let mut names: Vec<String> = fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
-            .collect();
-        names.sort();
-        names
     }
 
     #[test]

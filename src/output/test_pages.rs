@@ -1,8 +1,10 @@
-//! Pages for the tests of the encoders.
+//! What the tests of the encoders share: pages, and what lies in a folder.
 
 use crate::artefact::StableId;
 use crate::bake::{BakeReport, Lightmap, Page, Placement};
 use glam::Vec3;
+use std::fs;
+use std::path::Path;
 
 /// A page of smooth values, different in every texel and layer; the last texel of each row is uncovered.
 pub(super) fn page(width: u32, height: u32) -> Page {
@@ -46,4 +48,12 @@ pub(super) fn lightmap(pages: Vec<Page>) -> Lightmap {
         })
         .collect();
     Lightmap { pages, placements, baked_lights: vec![StableId::new("lamp")], report: BakeReport::default() }
+}
+
+/// The names of what lies in a folder, sorted.
+pub(super) fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
 }

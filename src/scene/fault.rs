@@ -120,6 +120,12 @@ pub enum FaultKind {
     /// An emission that is negative or not finite.
     #[error("has an emission that is negative or not a finite number; correct it")]
     BadEmission,
+    /// A range that is not above zero; NaN would spread to every texel.
+    #[error("has a range of {range} m, so it gives no light; give it one above zero")]
+    BadRange {
+        /// The range asked for [m].
+        range: f32,
+    },
     /// A light source without area.
     #[error("has no area, so it gives no light; give it a width and a height")]
     ZeroArea,

@@ -146,6 +146,11 @@ impl Light {
         if !(is_extent(light.width) && is_extent(light.height)) {
             kinds.push(FaultKind::ZeroArea);
         }
+        if let Some(range) = light.range
+            && (range.is_nan() || range <= 0.0)
+        {
+            kinds.push(FaultKind::BadRange { range });
+        }
         if !is_invertible(&light.world_from_local) {
             kinds.push(FaultKind::SingularTransform);
         }
@@ -259,6 +264,12 @@ mod tests {
         assert_fault(|s| s.instances[0].material = 7, "instance \"wall\" refers to material number 7");
         assert_fault(|s| s.instances[0].mesh = 7, "instance \"wall\" refers to mesh number 7");
         assert_fault(|s| s.instances.push(s.instances[0].clone()), "instance \"wall\" has the same id");
+        for range in [0.0, -1.0, f32::NAN] {
+            assert_fault(
+                |s| s.lights[0] = Light::Rect(RectLight { range: Some(range), ..rect(s) }),
+                "light \"lamp\" has a range of",
+            );
+        }
         assert_fault(|s| s.lights.push(s.lights[0].clone()), "light \"lamp\" has the same id");
         assert_fault(|s| s.materials[0].diffuse_albedo.x = 1.5, "material \"grey\" has a base colour outside 0 to 1");
         assert_fault(|s| s.materials[0].emitted_radiance.x = f32::INFINITY, "material \"grey\" has an emission");

@@ -5,8 +5,8 @@
 //! usual alternative gives every group the first four dimensions under a seed of its own ("padding", Burley 2020,
 //! § 6): these have better projections each, but between groups, which a path multiplies with each other, they are
 //! as random as independent numbers. Measured: of a product of six factors from two groups, one sequence leaves 1/8 of
-//! the variance of padding at 1024 samples and 1/16 at 4096; the lightmap of the Cornell box is worth 1.08 times as
-//! much per second at 256 paths per texel (16 runs of 16), and the same at 64 (16 runs of 4).
+//! the variance of padding at 1024 samples and 1/16 at 4096; on the lightmap of
+//! the Cornell box, at 16 runs of 16 paths, the two are not told apart (1.08 times the efficiency in one run of each).
 //!
 //! The sequence ends at 2¹⁶ samples; later ones start it again under another seed.
 
