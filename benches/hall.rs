@@ -87,8 +87,8 @@ fn add(scene: &mut Scene, name: &str, material: usize, [columns, rows]: [u32; 2]
         topology: Topology::TriangleList,
         indices: Indices::U32(indices),
         positions: uv1.iter().map(|uv| position(uv.x, uv.y)).collect(),
-        normals: None,
         uv1: Some(uv1),
+        ..Mesh::default()
     });
 }
 

@@ -322,7 +322,7 @@ fn what_cannot_be_read_is_named_and_the_rest_goes_on() {
     let names: Vec<&str> = scene.instances.iter().map(|instance| instance.name.as_str()).collect();
     assert_eq!(names, ["bare", "floor", "metal"]);
     let metal = &scene.materials[scene.instances[2].material];
-    assert!((metal.diffuse_albedo - Vec3::splat(0.4)).abs().max_element() < 1e-6, "{metal:?}");
+    assert!((metal.base_colour.truncate() - Vec3::splat(0.4)).abs().max_element() < 1e-6, "{metal:?}");
     let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
     for sentence in [
         "\"gone\" is in the render world only",

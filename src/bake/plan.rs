@@ -148,7 +148,7 @@ fn interreflection(scene: &Scene, settings: &BakeSettings) -> (bool, String) {
         .instances
         .iter()
         .filter_map(|instance| scene.materials.get(instance.material))
-        .map(|material| material.diffuse_albedo.max_element())
+        .map(|material| material.base_colour.truncate().max_element())
         .fold(0.0, f32::max);
     if brightest == 0.0 {
         return (false, "every surface is black".to_owned());

@@ -1,21 +1,23 @@
 //! Triangle meshes and their placed instances.
 
 use crate::artefact::StableId;
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Affine3A, Vec2, Vec3, Vec4};
 
 /// How corners make triangles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Topology {
     /// Three corners each.
+    #[default]
     TriangleList,
     /// Each corner makes a triangle with the two before it; every second one is turned round.
     TriangleStrip,
 }
 
 /// Which vertex each corner is.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub enum Indices {
     /// Corner i is vertex i.
+    #[default]
     None,
     /// 16-bit indices.
     U16(Vec<u16>),
@@ -24,7 +26,7 @@ pub enum Indices {
 }
 
 /// A shape in its own frame. Fronts are counter-clockwise.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Mesh {
     /// The name by which a person knows it.
     pub name: String,
@@ -36,8 +38,15 @@ pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// Shading normals, one per vertex; without them each triangle is flat.
     pub normals: Option<Vec<Vec3>>,
+    /// Texture coordinates (TEXCOORD_0), one per vertex; v grows downwards as in glTF.
+    pub uv0: Option<Vec<Vec2>>,
     /// Lightmap coordinates (TEXCOORD_1), one per vertex, in the unit square; v grows downwards as in glTF.
     pub uv1: Option<Vec<Vec2>>,
+    /// Linear colours that multiply the material's base colour, one per vertex.
+    pub colours: Option<Vec<Vec4>>,
+    /// Tangents for normal maps, one per vertex: a direction in the mesh's frame and, in w, the sign of the bitangent
+    /// w · (normal × tangent). Where they are missing, the tracer makes them (MikkTSpace).
+    pub tangents: Option<Vec<Vec4>>,
 }
 
 impl Mesh {
@@ -107,8 +116,7 @@ mod tests {
             topology,
             indices,
             positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y],
-            normals: None,
-            uv1: None,
+            ..Mesh::default()
         }
     }
 

@@ -7,19 +7,23 @@
 //! Lengths are metres, Y is up, colours are linear Rec. 709.
 
 mod camera;
+mod environment;
 mod fault;
 mod id;
 mod light;
 mod material;
 mod mesh;
+mod texture;
 mod validate;
 
 pub use camera::Camera;
+pub use environment::EnvironmentMap;
 pub use fault::{Fault, FaultKind, Subject};
 pub use id::unique_ids;
-pub use light::{Light, RectLight};
-pub use material::Material;
+pub use light::{DirectionalLight, Light, PointLight, RectLight, SpotLight};
+pub use material::{Alpha, Interior, Material, NormalEncoding, NormalMap, Scattering, Standard};
 pub use mesh::{Indices, Instance, LightmapRequest, Mesh, Topology};
+pub use texture::{Filter, Texels, Texture, TextureRef, UvChannel, Wrap};
 
 use glam::Vec3;
 
@@ -30,12 +34,16 @@ pub struct Scene {
     pub meshes: Vec<Mesh>,
     /// Surface descriptions, shared by instances.
     pub materials: Vec<Material>,
+    /// Pictures that materials refer to.
+    pub textures: Vec<Texture>,
     /// Placed meshes.
     pub instances: Vec<Instance>,
     /// Light sources that are no meshes.
     pub lights: Vec<Light>,
     /// Radiance of a sky that is the same in every direction [cd/m²]. Black is no sky.
     pub sky_radiance: Vec3,
+    /// A picture of the sky, on top of `sky_radiance`.
+    pub environment: Option<EnvironmentMap>,
     /// Views into the scene, for pictures.
     pub cameras: Vec<Camera>,
 }

@@ -124,7 +124,7 @@ impl Mesh {
 impl Material {
     pub(crate) fn faults(&self) -> Vec<FaultKind> {
         let mut kinds = Vec::new();
-        let albedo = self.diffuse_albedo;
+        let albedo = self.base_colour.truncate();
         if !(albedo.is_finite() && albedo.min_element() >= 0.0 && albedo.max_element() <= 1.0) {
             kinds.push(FaultKind::ColourOutOfRange);
         }
@@ -137,7 +137,7 @@ impl Material {
 
 impl Light {
     pub(crate) fn faults(&self) -> Vec<FaultKind> {
-        let Self::Rect(light) = self;
+        let Self::Rect(light) = self else { return Vec::new() };
         let mut kinds = Vec::new();
         if !is_radiance(light.radiance) {
             kinds.push(FaultKind::BadEmission);
@@ -186,6 +186,7 @@ mod tests {
                 positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y],
                 normals: Some(vec![Vec3::Z; 4]),
                 uv1: Some(vec![Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE]),
+                ..Mesh::default()
             }],
             materials: vec![Material::diffuse("grey", Vec3::splat(0.5))],
             instances: vec![Instance {
@@ -226,7 +227,7 @@ mod tests {
     #[test]
     fn each_fault_is_named() {
         let rect = |scene: &mut Scene| {
-            let Light::Rect(light) = &mut scene.lights[0];
+            let Light::Rect(light) = &scene.lights[0] else { unreachable!("the lamp is a rectangle") };
             light.clone()
         };
         assert_fault(
@@ -271,7 +272,7 @@ mod tests {
             );
         }
         assert_fault(|s| s.lights.push(s.lights[0].clone()), "light \"lamp\" has the same id");
-        assert_fault(|s| s.materials[0].diffuse_albedo.x = 1.5, "material \"grey\" has a base colour outside 0 to 1");
+        assert_fault(|s| s.materials[0].base_colour.x = 1.5, "material \"grey\" has a base colour outside 0 to 1");
         assert_fault(|s| s.materials[0].emitted_radiance.x = f32::INFINITY, "material \"grey\" has an emission");
         assert_fault(|s| s.sky_radiance.x = -1.0, "the sky has an emission");
         assert_fault(|s| s.lights[0] = Light::Rect(RectLight { width: 0.0, ..rect(s) }), "light \"lamp\" has no area");

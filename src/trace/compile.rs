@@ -4,7 +4,7 @@ use super::accel::Accel;
 use super::light::{Emitter, EmitterShape, Emitters};
 use super::surface::{Placement, TriangleShape, position_error};
 use super::tracer::{NOT_EMISSIVE, Receiver, Surface, Tracer};
-use crate::scene::{Fault, Instance, Light, Mesh, RectLight, Scene, Subject};
+use crate::scene::{Fault, Instance, Light, Material, Mesh, RectLight, Scattering, Scene, Subject};
 use glam::Vec3;
 use std::collections::HashSet;
 
@@ -24,7 +24,7 @@ impl Compiled {
             .materials
             .iter()
             .map(|material| Surface {
-                diffuse_albedo: material.diffuse_albedo,
+                diffuse_albedo: diffuse_albedo(material),
                 emitted_radiance: material.emitted_radiance,
                 double_sided: material.double_sided,
             })
@@ -38,8 +38,10 @@ impl Compiled {
         let mut lights: Vec<&Light> =
             scene.lights.iter().zip(&sound.lights).filter(|(_, sound)| **sound).map(|(light, _)| light).collect();
         lights.sort_by(|a, b| a.id().cmp(b.id()));
-        for Light::Rect(light) in lights {
-            world.add_rect_light(light);
+        for light in lights {
+            if let Light::Rect(light) = light {
+                world.add_rect_light(light);
+            }
         }
         let sky_radiance = if sound.sky { scene.sky_radiance } else { Vec3::ZERO };
         Self { tracer: world.into_tracer(sky_radiance), faults }
@@ -82,6 +84,13 @@ impl Sound {
         let lights = scene.lights.iter().map(|light| ids.insert(light.id()) && light.faults().is_empty()).collect();
         let sky = !faults.iter().any(|fault| fault.subject == Subject::Sky);
         Self { instances, lightmaps, lights, sky }
+    }
+}
+
+fn diffuse_albedo(material: &Material) -> Vec3 {
+    match &material.scattering {
+        Scattering::None => Vec3::ZERO,
+        _ => material.base_colour.truncate(),
     }
 }
 

@@ -104,8 +104,7 @@ impl Shape {
             topology: Topology::TriangleList,
             indices: Indices::U32(self.triangles.concat()),
             positions: self.positions.clone(),
-            normals: None,
-            uv1: None,
+            ..Mesh::default()
         };
         let instance = Instance {
             id: StableId::new("shape"),

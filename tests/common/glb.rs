@@ -45,6 +45,7 @@ pub fn parse(bytes: &[u8]) -> Scene {
                 positions: three(attribute("POSITION").unwrap()),
                 normals: attribute("NORMAL").map(three),
                 uv1,
+                ..Mesh::default()
             });
         }
     }
@@ -57,9 +58,10 @@ fn material(json: &Value) -> Material {
     let strength = json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"].as_f64().unwrap_or(1.0);
     Material {
         name: json["name"].as_str().unwrap().to_owned(),
-        diffuse_albedo: colour(&json["pbrMetallicRoughness"]["baseColorFactor"]),
+        base_colour: colour(&json["pbrMetallicRoughness"]["baseColorFactor"]).extend(1.0),
         emitted_radiance: colour(&json["emissiveFactor"]) * strength as f32,
         double_sided: json["doubleSided"].as_bool().unwrap_or(false),
+        ..Material::default()
     }
 }
 

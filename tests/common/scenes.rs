@@ -44,6 +44,7 @@ impl SceneBuilder {
             positions,
             normals: None,
             uv1,
+            ..Mesh::default()
         });
         self
     }
@@ -97,9 +98,9 @@ impl SceneBuilder {
 pub fn glowing(albedo: f32, radiance: f32) -> Material {
     Material {
         name: format!("albedo {albedo}, radiance {radiance}"),
-        diffuse_albedo: Vec3::splat(albedo),
+        base_colour: Vec3::splat(albedo).extend(1.0),
         emitted_radiance: Vec3::splat(radiance),
-        double_sided: false,
+        ..Material::default()
     }
 }
 

@@ -74,9 +74,10 @@ fn read(name: &str, material: &StandardMaterial, settings: &SceneSettings) -> Ma
     let emissive = material.emissive.to_vec3();
     Material {
         name: name.to_owned(),
-        diffuse_albedo: material.base_color.to_linear().to_vec3() * diffuse_share,
+        base_colour: (material.base_color.to_linear().to_vec3() * diffuse_share).extend(1.0),
         emitted_radiance: emissive * settings.emissive.nits(material.emissive_exposure_weight),
         double_sided: material.double_sided,
+        ..Material::default()
     }
 }
 

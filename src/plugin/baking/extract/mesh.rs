@@ -109,7 +109,7 @@ fn read(
     if attribute(Mesh::ATTRIBUTE_COLOR)?.is_some() {
         warnings.push(ExtractionWarning::VertexColours { name: name.clone() });
     }
-    Ok(scene::Mesh { name, topology, indices, positions, normals, uv1 })
+    Ok(scene::Mesh { name, topology, indices, positions, normals, uv1, ..scene::Mesh::default() })
 }
 
 fn format_warning(name: &str, attribute: &'static str, found: &VertexAttributeValues) -> ExtractionWarning {
