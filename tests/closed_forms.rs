@@ -202,7 +202,7 @@ fn bevys_range_window_dims_a_rectangular_light() {
     let point = [at(Vec3::ZERO, Vec3::Y)];
     let reading = |scene: &Scene, estimator| read(scene, &point, 1 << 14, by(estimator))[0].irradiance.x;
     let full = reading(&scene, Estimator::Mis);
-    let bevy_kiln::scene::Light::Rect(light) = &mut scene.lights[0];
+    let bevy_kiln::scene::Light::Rect(light) = &mut scene.lights[0] else { unreachable!("the lamp is a rectangle") };
     light.range = Some(2.0);
     let window = (1.0 - 0.5_f64.powi(4)).powi(2);
     for estimator in [Estimator::Mis, Estimator::Light, Estimator::Bsdf] {
