@@ -11,6 +11,8 @@ pub enum Subject {
     Instance(String),
     /// A surface description.
     Material(String),
+    /// A picture that materials refer to.
+    Texture(String),
     /// A light source.
     Light(String),
     /// The sky.
@@ -23,6 +25,7 @@ impl std::fmt::Display for Subject {
             Self::Mesh(name) => write!(f, "mesh \"{name}\""),
             Self::Instance(name) => write!(f, "instance \"{name}\""),
             Self::Material(name) => write!(f, "material \"{name}\""),
+            Self::Texture(name) => write!(f, "texture \"{name}\""),
             Self::Light(name) => write!(f, "light \"{name}\""),
             Self::Sky => write!(f, "the sky"),
         }
@@ -114,6 +117,45 @@ pub enum FaultKind {
     /// Two instances or two lights share an id, so they could not be told apart.
     #[error("has the same id as another; give each its own name")]
     DuplicateId,
+    /// It refers to a texture that is not there.
+    #[error("refers to texture number {index}, which is not there")]
+    MissingTexture {
+        /// The index asked for.
+        index: usize,
+    },
+    /// A texture whose size and texels do not go together. It is ignored.
+    #[error("says {width} × {height} texels and has {texels}, so it is ignored; export it again")]
+    TexelCount {
+        /// Its width.
+        width: u32,
+        /// Its height.
+        height: u32,
+        /// How many texels it has.
+        texels: usize,
+    },
+    /// A texture with NaN or infinity in it. It is ignored.
+    #[error("has a texel that is not a finite number (at {x}, {y}), so it is ignored; repair the picture")]
+    NonFiniteTexel {
+        /// Column of the first such texel.
+        x: u32,
+        /// Its row.
+        y: u32,
+    },
+    /// A number of a material that is NaN or outside what it can mean.
+    #[error("has {what} of {value}, outside {low} to {high}; correct it")]
+    OutOfRange {
+        /// Which number.
+        what: &'static str,
+        /// What it is.
+        value: f32,
+        /// The smallest that has a meaning.
+        low: f32,
+        /// The largest.
+        high: f32,
+    },
+    /// A transform of texture coordinates that is not finite.
+    #[error("has a texture transform that is not a finite number; correct it")]
+    BadUvTransform,
     /// A colour outside [0, 1], or not finite.
     #[error("has a base colour outside 0 to 1 and would make light out of nothing; correct the colour")]
     ColourOutOfRange,

@@ -1,8 +1,10 @@
 //! Every fault of a scene, found before anything is traced.
 
-use super::{Fault, FaultKind, Instance, Light, Material, Mesh, Scene, Subject, Topology};
+use super::{Fault, FaultKind, Instance, Light, Mesh, Scene, Subject, Topology};
 use glam::{Affine3A, Vec2, Vec3};
 use std::collections::HashSet;
+
+mod material;
 
 impl Scene {
     /// Every fault in the scene, each with the name of what is at fault. Empty for a sound scene.
@@ -14,8 +16,13 @@ impl Scene {
         for mesh in &self.meshes {
             blame(Subject::Mesh(mesh.name.clone()), mesh.faults());
         }
+        for texture in &self.textures {
+            blame(Subject::Texture(texture.name.clone()), texture.faults());
+        }
         for material in &self.materials {
-            blame(Subject::Material(material.name.clone()), material.faults());
+            let mut kinds = material.faults();
+            kinds.extend(self.missing_texture(material));
+            blame(Subject::Material(material.name.clone()), kinds);
         }
         let mut ids = HashSet::new();
         for instance in &self.instances {
@@ -73,7 +80,13 @@ impl Mesh {
             kinds.push(FaultKind::NonFinitePosition { vertex });
         }
         let lengths =
-            [("normals", self.normals.as_ref().map(Vec::len)), ("UV1 coordinates", self.uv1.as_ref().map(Vec::len))];
+            [
+            ("normals", self.normals.as_ref().map(Vec::len)),
+            ("UV0 coordinates", self.uv0.as_ref().map(Vec::len)),
+            ("UV1 coordinates", self.uv1.as_ref().map(Vec::len)),
+            ("colours", self.colours.as_ref().map(Vec::len)),
+            ("tangents", self.tangents.as_ref().map(Vec::len)),
+        ];
         for (attribute, length) in lengths {
             if let Some(count) = length.filter(|&count| count != vertex_count) {
                 kinds.push(FaultKind::AttributeLength { attribute, count, vertex_count });
@@ -121,20 +134,6 @@ impl Mesh {
     }
 }
 
-impl Material {
-    pub(crate) fn faults(&self) -> Vec<FaultKind> {
-        let mut kinds = Vec::new();
-        let albedo = self.base_colour.truncate();
-        if !(albedo.is_finite() && albedo.min_element() >= 0.0 && albedo.max_element() <= 1.0) {
-            kinds.push(FaultKind::ColourOutOfRange);
-        }
-        if !is_radiance(self.emitted_radiance) {
-            kinds.push(FaultKind::BadEmission);
-        }
-        kinds
-    }
-}
-
 impl Light {
     pub(crate) fn faults(&self) -> Vec<FaultKind> {
         let Self::Rect(light) = self else { return Vec::new() };
@@ -175,7 +174,9 @@ fn is_invertible(transform: &Affine3A) -> bool {
 mod tests {
     use super::*;
     use crate::artefact::StableId;
-    use crate::scene::{Indices, LightmapRequest, RectLight};
+    use crate::scene::{
+        Filter, Indices, LightmapRequest, Material, RectLight, Scattering, Standard, Texels, Texture, TextureRef, UvChannel,
+    };
 
     fn sound() -> Scene {
         Scene {
@@ -274,6 +275,40 @@ mod tests {
         assert_fault(|s| s.lights.push(s.lights[0].clone()), "light \"lamp\" has the same id");
         assert_fault(|s| s.materials[0].base_colour.x = 1.5, "material \"grey\" has a base colour outside 0 to 1");
         assert_fault(|s| s.materials[0].emitted_radiance.x = f32::INFINITY, "material \"grey\" has an emission");
+        assert_fault(|s| s.materials[0].base_colour.w = -0.1, "material \"grey\" has a base colour outside 0 to 1");
+        assert_fault(
+            |s| s.materials[0].scattering = Scattering::Refraction { ior: 0.0 },
+            "material \"grey\" has an index of refraction of 0, outside 0.01 to 100",
+        );
+        assert_fault(
+            |s| {
+                let standard = Standard { metallic: f32::NAN, ..Standard::default() };
+                s.materials[0].scattering = Scattering::Standard(Box::new(standard));
+            },
+            "material \"grey\" has a metallic share of NaN",
+        );
+        assert_fault(
+            |s| s.materials[0].scattering = Scattering::Phong { specular: Vec3::splat(0.6), exponent: 5.0 },
+            "material \"grey\" has a base colour outside 0 to 1",
+        );
+        let reference = TextureRef { texture: 3, uv: UvChannel::Uv0 };
+        assert_fault(
+            |s| s.materials[0].base_colour_texture = Some(reference),
+            "material \"grey\" refers to texture number 3",
+        );
+        let texture = |texels: &[[f32; 4]]| Texture {
+            name: "wood".into(),
+            width: 2,
+            height: 1,
+            texels: Texels::Float(texels.into()),
+            wrap: Default::default(),
+            filter: Filter::Linear,
+        };
+        assert_fault(|s| s.textures.push(texture(&[[0.0; 4]])), "texture \"wood\" says 2 × 1 texels and has 1");
+        assert_fault(
+            |s| s.textures.push(texture(&[[0.0; 4], [0.0, f32::NAN, 0.0, 1.0]])),
+            "texture \"wood\" has a texel that is not a finite number (at 1, 0)",
+        );
         assert_fault(|s| s.sky_radiance.x = -1.0, "the sky has an emission");
         assert_fault(|s| s.lights[0] = Light::Rect(RectLight { width: 0.0, ..rect(s) }), "light \"lamp\" has no area");
         assert_fault(

@@ -3,6 +3,8 @@
 //! [`Transport`] says how light is followed; what asks for it lies to the right.
 
 mod accel;
+mod effects;
+mod texture;
 mod bsdf;
 mod closed;
 mod compile;
