@@ -6,7 +6,7 @@
 //! A path ends by Russian roulette (Arvo and Kirk 1990), whose chance of survival is at most 1 and depends on β alone,
 //! so that it loses no light; there is no cap on bounces but one that a person asks for.
 
-use super::bsdf::{Bsdf, Lambert};
+use super::bsdf::{Bsdf, Density, Lambert};
 use super::mis::power_heuristic;
 use super::sampler::{Dimensions, Sampler};
 use super::surface::TriangleShape;
@@ -101,7 +101,12 @@ impl Tracer {
                 radiance += throughput * self.light_sample(&vertex, &frame, &bsdf, u, transport.estimator, rays);
             }
             let [u, v, u_survive, _] = sampler.draw(Dimensions::Scatter { vertex: number });
-            let scattered = bsdf.sample(Vec2::new(u, v));
+            let Some(scattered) = bsdf.sample(Vec3::Z, [u, v, 0.0]) else {
+                return radiance;
+            };
+            let Density::Smooth(pdf) = scattered.density else {
+                return radiance;
+            };
             let wi = frame.world_from_local(scattered.wi);
             // A shading normal can send a direction below the flat surface, which blocks it.
             if vertex.geometric_normal.dot(wi) <= 0.0 {
@@ -110,8 +115,7 @@ impl Tracer {
             throughput *= scattered.weight;
             *rays += 1;
             let hit = self.accel.closest(vertex.origin, wi, f32::INFINITY);
-            let weigh =
-                |emitter, distance| self.emission_weight(emitter, &vertex, wi, distance, scattered.pdf, transport);
+            let weigh = |emitter, distance| self.emission_weight(emitter, &vertex, wi, distance, pdf, transport);
             let end = hit.map_or(f32::INFINITY, |hit| hit.t);
             for (emitter, distance) in self.emitters.passed(vertex.origin, wi, end) {
                 let emitted = self.emitters.get(emitter).radiance_towards(vertex.position, wi);
@@ -184,7 +188,7 @@ impl Tracer {
             return Vec3::ZERO;
         };
         let wi = frame.local_from_world(sample.wi);
-        let scattering = bsdf.evaluate(wi);
+        let scattering = bsdf.evaluate(Vec3::Z, wi);
         if scattering == Vec3::ZERO || vertex.geometric_normal.dot(sample.wi) <= 0.0 {
             return Vec3::ZERO;
         }
@@ -194,7 +198,7 @@ impl Tracer {
         }
         let weight = match estimator {
             Estimator::Light => 1.0,
-            _ => power_heuristic(sample.pdf, bsdf.pdf(wi)),
+            _ => power_heuristic(sample.pdf, bsdf.pdf(Vec3::Z, wi)),
         };
         scattering * sample.radiance * (weight / sample.pdf)
     }

@@ -1,14 +1,14 @@
 //! Scattering: samples follow their density, no light is made, and swapping the two directions changes nothing.
 
-use super::{Bsdf, Lambert};
+use super::super::{Density, Lambert};
 use crate::math::testing::{ChiSquared, Domain, Random, Rejection, integrate};
 use glam::Vec3;
 use std::f64::consts::{PI, TAU};
 
 const ALBEDO: Vec3 = Vec3::new(0.73, 0.05, 1.0);
 
-fn lambert() -> Bsdf {
-    Bsdf::Lambert(Lambert { albedo: ALBEDO })
+fn lambert() -> Lambert {
+    Lambert { albedo: ALBEDO }
 }
 
 #[test]
@@ -32,8 +32,9 @@ fn a_sample_is_what_is_found_for_its_direction() {
     let mut random = Random::new(1);
     for _ in 0..10_000 {
         let sample = bsdf.sample(random.square());
-        assert_eq!(sample.pdf, bsdf.pdf(sample.wi));
-        let weight = bsdf.evaluate(sample.wi) / sample.pdf;
+        let pdf = bsdf.pdf(sample.wi);
+        assert_eq!(sample.density, Density::Smooth(pdf));
+        let weight = bsdf.evaluate(sample.wi) / pdf;
         assert!((weight - sample.weight).abs().max_element() < 1e-6, "{sample:?} but {weight}");
     }
 }

@@ -1,0 +1,315 @@
+//! Bevy's `StandardMaterial` as one way to scatter light.
+//!
+//! With t = specular_transmission · (1 − metallic) the surface is (1 − t) parts of a microfacet coat over a diffuse
+//! base and t parts of glass, a clear coat over all (`pbr_functions.wgsl`, `calculate_F0`, `calculate_diffuse_color`).
+//! Unlike on screen, the diffuse base gets only what the coat leaves, the same both ways: times (1 − E(μo))
+//! (1 − E(μi)) / (1 − E_average) per channel (Kelemen and Szirmay-Kalos 2001). So no albedo is above 1.
+
+use super::albedo::AlbedoTables;
+use super::clearcoat::Clearcoat;
+use super::dielectric::Dielectric;
+use super::diffuse_transmission::DiffuseTransmission;
+use super::fresnel::Schlick;
+use super::specular::Specular;
+use super::thin::Pane;
+use super::{BsdfSample, Density, Lambert};
+use crate::scene::Interior;
+use glam::{Vec2, Vec3};
+
+/// What a `StandardMaterial` says at one point, textures looked up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::trace) struct StandardParameters {
+    pub(in crate::trace) base_colour: Vec3,
+    pub(in crate::trace) metallic: f32,
+    pub(in crate::trace) perceptual_roughness: f32,
+    pub(in crate::trace) reflectance: f32,
+    pub(in crate::trace) specular_tint: Vec3,
+    pub(in crate::trace) specular_transmission: f32,
+    /// Index of refraction on the far side over that on the near one.
+    pub(in crate::trace) eta: f32,
+    pub(in crate::trace) interior: Interior,
+    pub(in crate::trace) diffuse_transmission: f32,
+    pub(in crate::trace) clearcoat: f32,
+    pub(in crate::trace) clearcoat_perceptual_roughness: f32,
+}
+
+/// The lobes of a `StandardMaterial`.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::trace) struct Standard<'a> {
+    coat: Clearcoat<'a>,
+    specular: Specular<'a>,
+    /// What the specular lobe leaves on average; nothing below it if that is nothing.
+    average_left: Vec3,
+    diffuse: Lambert,
+    diffuser: DiffuseTransmission,
+    glass: Glass<'a>,
+    /// The part that is glass.
+    clear: f32,
+}
+
+/// What a clear surface is made of.
+#[derive(Clone, Copy, Debug)]
+enum Glass<'a> {
+    Pane(Pane<'a>),
+    Body(Dielectric),
+}
+
+/// The chance of each lobe; together 1.
+#[derive(Clone, Copy, Debug)]
+struct Chances {
+    coat: f32,
+    specular: f32,
+    diffuse: f32,
+    diffuser: f32,
+    glass: f32,
+}
+
+/// Which lobe a sample comes from.
+#[derive(Clone, Copy, Debug)]
+enum Lobe {
+    Coat,
+    Specular,
+    Diffuse,
+    Diffuser,
+    Glass,
+}
+
+impl<'a> Standard<'a> {
+    /// The lobes at one point.
+    pub(in crate::trace) fn new(at: &StandardParameters, tables: &'a AlbedoTables) -> Self {
+        let dielectric = 0.16 * at.reflectance * at.reflectance * at.specular_tint;
+        let specular =
+            Specular::new(Schlick::new(dielectric.lerp(at.base_colour, at.metallic)), at.perceptual_roughness, tables);
+        let diffuse = at.base_colour * (1.0 - at.metallic);
+        let glass = match at.interior {
+            Interior::ThinWalled => {
+                Glass::Pane(Pane::new(Schlick::new(dielectric), at.base_colour, at.perceptual_roughness, tables))
+            }
+            Interior::Volume { .. } => Glass::Body(Dielectric::new(at.eta, at.base_colour, at.perceptual_roughness)),
+        };
+        Self {
+            coat: Clearcoat::new(at.clearcoat, at.clearcoat_perceptual_roughness, tables),
+            specular,
+            average_left: (Vec3::ONE - specular.average_albedo()).max(Vec3::splat(1e-6)),
+            diffuse: Lambert { albedo: diffuse * (1.0 - at.diffuse_transmission) },
+            diffuser: DiffuseTransmission { albedo: diffuse * at.diffuse_transmission },
+            glass,
+            clear: at.specular_transmission * (1.0 - at.metallic),
+        }
+    }
+
+    /// The share that crosses unscattered at this cosine to the normal: of a smooth pane. Not part of the rest.
+    #[inline]
+    pub(in crate::trace) fn straight(&self, cos: f32) -> Vec3 {
+        match &self.glass {
+            Glass::Pane(pane) if self.clear > 0.0 => self.clear * self.coat.leaves(cos, cos) * pane.straight(cos),
+            _ => Vec3::ZERO,
+        }
+    }
+
+    #[inline]
+    pub(super) fn sample(&self, wo: Vec3, u: [f32; 3]) -> Option<BsdfSample> {
+        if wo.z <= 0.0 {
+            return None;
+        }
+        let chances = self.chances(wo)?;
+        let (lobe, chance, u_choice) = chances.choose(u[2]);
+        let inner = [u[0], u[1], u_choice];
+        let sample = match lobe {
+            Lobe::Coat => self.coat.sample(wo, inner)?,
+            Lobe::Specular => self.specular.sample(wo, inner)?,
+            Lobe::Diffuse => self.diffuse.sample(Vec2::new(u[0], u[1])),
+            Lobe::Diffuser => self.diffuser.sample(Vec2::new(u[0], u[1])),
+            Lobe::Glass => self.glass.sample(wo, inner)?,
+        };
+        if let Density::Delta = sample.density {
+            let share = self.share(lobe, wo, sample.wi) / chance;
+            return Some(BsdfSample { weight: sample.weight * share, ..sample });
+        }
+        let pdf = self.lobes_pdf(&chances, wo, sample.wi);
+        let weight = self.evaluate(wo, sample.wi) / pdf;
+        (pdf > 0.0).then_some(BsdfSample { weight, density: Density::Smooth(pdf), ..sample })
+    }
+
+    /// Scattering function times |cos θi| [1/sr].
+    #[inline]
+    pub(super) fn evaluate(&self, wo: Vec3, wi: Vec3) -> Vec3 {
+        if wo.z <= 0.0 || wi.z == 0.0 {
+            return Vec3::ZERO;
+        }
+        let mut below = Vec3::ZERO;
+        if self.clear < 1.0 {
+            let base = if wi.z > 0.0 { self.diffuse.evaluate(wi) } else { self.diffuser.evaluate(wi) };
+            let coated = self.specular.evaluate(wo, wi) + base * self.left(wo.z, wi.z.abs());
+            below += (1.0 - self.clear) * coated;
+        }
+        if self.clear > 0.0 {
+            below += self.clear * self.glass.evaluate(wo, wi);
+        }
+        self.coat.evaluate(wo, wi) + self.coat.leaves(wo.z, wi.z.abs()) * below
+    }
+
+    /// Density of `wi` [1/sr].
+    #[inline]
+    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if wo.z <= 0.0 {
+            return 0.0;
+        }
+        self.chances(wo).map_or(0.0, |chances| self.lobes_pdf(&chances, wo, wi))
+    }
+
+    /// An estimate of the light that is scattered over that which arrives, as energy.
+    #[inline]
+    pub(super) fn albedo(&self, wo: Vec3) -> Vec3 {
+        let [coat, specular, diffuse, diffuser, glass] = self.albedos(wo);
+        coat + specular + diffuse + diffuser + glass
+    }
+
+    /// Whether there is a lobe that is spread out.
+    #[inline]
+    pub(super) fn has_smooth(&self) -> bool {
+        self.coat.is_smooth_lobe() || self.has_smooth_below()
+    }
+
+    /// Whether light from the far side is spread out.
+    #[inline]
+    pub(super) fn transmits(&self) -> bool {
+        self.clear < 1.0 && self.diffuser.albedo != Vec3::ZERO || self.clear > 0.0 && self.glass.is_smooth_lobe()
+    }
+
+    #[inline]
+    fn has_smooth_below(&self) -> bool {
+        let specular = self.specular.is_smooth_lobe() && self.specular.albedo(1.0) != Vec3::ZERO;
+        self.transmits() || self.clear < 1.0 && (self.diffuse.albedo != Vec3::ZERO || specular)
+    }
+
+    /// What the specular lobe leaves for the base.
+    #[inline]
+    fn left(&self, cos_o: f32, cos_i: f32) -> Vec3 {
+        let left = |cos| (Vec3::ONE - self.specular.albedo(cos)).max(Vec3::ZERO);
+        left(cos_o) * left(cos_i) / self.average_left
+    }
+
+    /// The part of the surface that a lobe without spread belongs to, less what the coat takes.
+    #[inline]
+    fn share(&self, lobe: Lobe, wo: Vec3, wi: Vec3) -> f32 {
+        let leaves = self.coat.leaves(wo.z, wi.z.abs());
+        match lobe {
+            Lobe::Coat => 1.0,
+            Lobe::Specular | Lobe::Diffuse | Lobe::Diffuser => leaves * (1.0 - self.clear),
+            Lobe::Glass => leaves * self.clear,
+        }
+    }
+
+    /// About what each lobe scatters.
+    #[inline]
+    fn albedos(&self, wo: Vec3) -> [Vec3; 5] {
+        let coat = self.coat.albedo(wo.z);
+        let leaves = 1.0 - coat;
+        let (opaque, clear) = (leaves * (1.0 - self.clear), leaves * self.clear);
+        let specular = self.specular.albedo(wo.z);
+        let left = (Vec3::ONE - specular).max(Vec3::ZERO) * opaque;
+        let glass = if clear > 0.0 { clear * self.glass.albedo(wo) } else { Vec3::ZERO };
+        [Vec3::splat(coat), opaque * specular, left * self.diffuse.albedo, left * self.diffuser.albedo, glass]
+    }
+
+    /// `None` if nothing is scattered.
+    #[inline]
+    fn chances(&self, wo: Vec3) -> Option<Chances> {
+        let [coat, specular, diffuse, diffuser, glass] = self.albedos(wo).map(Vec3::element_sum);
+        let sum = coat + specular + diffuse + diffuser + glass;
+        let of = |albedo: f32| albedo / sum;
+        let chances = Chances {
+            coat: of(coat),
+            specular: of(specular),
+            diffuse: of(diffuse),
+            diffuser: of(diffuser),
+            glass: of(glass),
+        };
+        (sum > 0.0).then_some(chances)
+    }
+
+    #[inline]
+    fn lobes_pdf(&self, chances: &Chances, wo: Vec3, wi: Vec3) -> f32 {
+        let mut pdf = chances.diffuse * self.diffuse.pdf(wi) + chances.diffuser * self.diffuser.pdf(wi);
+        if chances.coat > 0.0 {
+            pdf += chances.coat * self.coat.pdf(wo, wi);
+        }
+        if chances.specular > 0.0 {
+            pdf += chances.specular * self.specular.pdf(wo, wi);
+        }
+        if chances.glass > 0.0 {
+            pdf += chances.glass * self.glass.pdf(wo, wi);
+        }
+        pdf
+    }
+}
+
+impl Glass<'_> {
+    #[inline]
+    fn sample(&self, wo: Vec3, u: [f32; 3]) -> Option<BsdfSample> {
+        match self {
+            Self::Pane(pane) => pane.sample(wo, u),
+            Self::Body(body) => body.sample(wo, u),
+        }
+    }
+
+    #[inline]
+    fn evaluate(&self, wo: Vec3, wi: Vec3) -> Vec3 {
+        match self {
+            Self::Pane(pane) => pane.evaluate(wo, wi),
+            Self::Body(body) => body.evaluate(wo, wi),
+        }
+    }
+
+    #[inline]
+    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        match self {
+            Self::Pane(pane) => pane.pdf(wo, wi),
+            Self::Body(body) => body.pdf(wo, wi),
+        }
+    }
+
+    #[inline]
+    fn albedo(&self, wo: Vec3) -> Vec3 {
+        match self {
+            Self::Pane(pane) => pane.albedo(wo.z),
+            Self::Body(body) => body.albedo(wo),
+        }
+    }
+
+    #[inline]
+    fn is_smooth_lobe(&self) -> bool {
+        match self {
+            Self::Pane(pane) => pane.is_smooth_lobe(),
+            Self::Body(body) => body.is_smooth_lobe(),
+        }
+    }
+}
+
+impl Chances {
+    /// A lobe, its chance, and what is left of the variate, uniform again.
+    #[inline]
+    fn choose(&self, u: f32) -> (Lobe, f32, f32) {
+        let lobes = [
+            (Lobe::Diffuse, self.diffuse),
+            (Lobe::Specular, self.specular),
+            (Lobe::Coat, self.coat),
+            (Lobe::Diffuser, self.diffuser),
+            (Lobe::Glass, self.glass),
+        ];
+        let mut left = u;
+        let mut last = (Lobe::Diffuse, self.diffuse, 0.0);
+        for (lobe, chance) in lobes.into_iter().filter(|(_, chance)| *chance > 0.0) {
+            last = (lobe, chance, (left / chance).clamp(0.0, BELOW_ONE));
+            if left < chance {
+                break;
+            }
+            left -= chance;
+        }
+        last
+    }
+}
+
+/// The largest number below 1.
+const BELOW_ONE: f32 = 1.0 - 0.5 * f32::EPSILON;
