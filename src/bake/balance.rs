@@ -6,7 +6,7 @@
 //! there is no balance to draw.
 
 use super::BakeError;
-use super::gather::{Estimate, KeyKind, key};
+use super::gather::{Estimate, KeyKind, Paths, key};
 use super::sites::Site;
 use super::workers::Workers;
 use crate::math::Discrete;
@@ -34,7 +34,8 @@ pub(super) fn energy_balance(
     let Some(emitted) = tracer.emitted_flux() else {
         return Ok(None);
     };
-    if transport.max_bounces.is_some() || !tracer.is_closed(WALKS, transport.seed) {
+    let loses_light = transport.max_bounces.is_some() || transport.clamp.is_some();
+    if loses_light || !tracer.is_diffuse() || !tracer.is_closed(WALKS, transport.seed) {
         return Ok(None);
     }
     let mut measured_area = vec![0.0; tracer.triangle_count()];
@@ -42,8 +43,10 @@ pub(super) fn energy_balance(
     for (site, estimate) in sites.iter().zip(estimates) {
         for &(triangle, area) in &site.texel.areas {
             measured_area[triangle as usize] += area;
-            absorbed += absorption(tracer, triangle) * estimate.mean * std::f64::consts::PI * area;
         }
+        let area: f64 = site.texel.areas.iter().map(|(_, area)| area).sum();
+        let absorption = (Vec3::ONE - site.texel.albedo(tracer)).as_dvec3();
+        absorbed += absorption * estimate.mean * std::f64::consts::PI * area;
     }
     absorbed += unmeasured_absorption(tracer, &measured_area, transport, workers)?;
     Ok(Some(luminance(absorbed) / luminance(emitted)))
@@ -76,15 +79,13 @@ fn unmeasured_absorption(
         let normal = if side < measured_area.len() { tracer.normal(triangle) } else { -tracer.normal(triangle) };
         let weights = square_to_triangle(Vec2::new(u, v));
         let start = tracer.start_on_triangle(triangle, weights.to_array(), normal);
-        let estimate = Estimate::gather(combine(point_key, point), PATHS_PER_POINT, cancel, |sobol, rays| {
+        let paths = Paths { key: combine(point_key, point), count: PATHS_PER_POINT, clamp: None };
+        let estimate = Estimate::gather(paths, cancel, |sobol, rays| {
             tracer.diffuse_radiance(&start, sobol, transport, rays)
         })?;
-        Some(absorption(tracer, triangle) * estimate.mean)
+        let absorption = Vec3::ONE - tracer.diffuse_albedo(triangle, weights.to_array());
+        Some(absorption.as_dvec3() * estimate.mean)
     })?;
     let mean = work.iter().sum::<DVec3>() / POINTS as f64;
     Ok(mean * std::f64::consts::PI * total)
-}
-
-fn absorption(tracer: &Tracer, triangle: u32) -> DVec3 {
-    (Vec3::ONE - tracer.diffuse_albedo(triangle)).as_dvec3()
 }

@@ -30,6 +30,17 @@ pub(super) fn key(kind: KeyKind, seed: u64, object: u64, place: u64) -> u64 {
     combine(combine(combine(seed, kind as u64), object), place)
 }
 
+/// The paths of one estimate.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Paths {
+    /// Whose random numbers they are.
+    pub(super) key: u64,
+    /// How many there are at least.
+    pub(super) count: u32,
+    /// The most that one of them may bring, in its strongest channel.
+    pub(super) clamp: Option<f32>,
+}
+
 /// A mean and its standard error, per channel.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Estimate {
@@ -37,28 +48,32 @@ pub(super) struct Estimate {
     pub(super) stderr: DVec3,
     pub(super) samples: u64,
     pub(super) rays: u64,
+    /// What the clamp took from the mean, as luminance.
+    pub(super) clamped: f64,
 }
 
 impl Estimate {
-    /// Runs at least `samples` paths. `path` gives one path's value for its numbers and counts its rays. `None` if
-    /// cancelled.
+    /// Runs the paths. `path` gives one path's value for its numbers and counts its rays. `None` if cancelled.
     pub(super) fn gather(
-        key: u64,
-        samples: u32,
+        paths: Paths,
         cancel: &CancelToken,
         mut path: impl FnMut(&Sobol, &mut u64) -> Vec3,
     ) -> Option<Self> {
-        let per_replicate = u64::from(samples.div_ceil(REPLICATES));
+        let per_replicate = u64::from(paths.count.div_ceil(REPLICATES));
         let mut rays = 0;
+        let mut taken = 0.0;
         let mut means = [DVec3::ZERO; REPLICATES as usize];
         for (replicate, mean) in means.iter_mut().enumerate() {
-            let key = combine(key, replicate as u64);
+            let key = combine(paths.key, replicate as u64);
             let mut sum = DVec3::ZERO;
             for index in 0..per_replicate {
                 if index.is_multiple_of(CANCEL_INTERVAL) && cancel.is_cancelled() {
                     return None;
                 }
-                sum += path(&Sobol::new(key, index), &mut rays).as_dvec3();
+                let value = path(&Sobol::new(key, index), &mut rays);
+                let kept = clamped(value, paths.clamp);
+                taken += luminance(value - kept);
+                sum += kept.as_dvec3();
             }
             *mean = sum / per_replicate as f64;
         }
@@ -67,7 +82,8 @@ impl Estimate {
         let squares: DVec3 = means.iter().map(|&value| (value - mean) * (value - mean)).sum();
         let variance_of_mean = squares / (count * (count - 1.0));
         let stderr = DVec3::from(variance_of_mean.to_array().map(f64::sqrt));
-        Some(Self { mean, stderr, samples: per_replicate * u64::from(REPLICATES), rays })
+        let samples = per_replicate * u64::from(REPLICATES);
+        Some(Self { mean, stderr, samples, rays, clamped: taken / samples as f64 })
     }
 
     /// Standard error over value, by luminance; `None` for a black estimate.
@@ -75,6 +91,22 @@ impl Estimate {
         let value = luminance(self.mean);
         (value > 0.0).then(|| luminance(self.stderr) / value)
     }
+}
+
+/// A value with its hue and, in its strongest channel, at most `limit`.
+fn clamped(value: Vec3, limit: Option<f32>) -> Vec3 {
+    match limit {
+        Some(limit) if value.max_element() > limit => value * (limit / value.max_element()),
+        _ => value,
+    }
+}
+
+/// Share of the light that the clamp took; `None` where nothing was to be clamped.
+pub(super) fn clamped_share(estimates: &[Estimate], clamp: Option<f32>) -> Option<f64> {
+    clamp?;
+    let taken: f64 = estimates.iter().map(|estimate| estimate.clamped).sum();
+    let kept: f64 = estimates.iter().map(|estimate| luminance(estimate.mean)).sum();
+    Some(if taken > 0.0 { taken / (taken + kept) } else { 0.0 })
 }
 
 /// Relative standard errors over the estimates brighter than 1e-3 of their mean.
@@ -104,18 +136,37 @@ mod tests {
     use super::*;
     use crate::trace::{Dimensions, Sampler};
 
+    fn paths(key: u64, count: u32) -> Paths {
+        Paths { key, count, clamp: None }
+    }
+
+    #[test]
+    fn a_clamp_says_what_it_took() {
+        let bright = |sobol: &Sobol, _: &mut u64| {
+            let one_in_four = sobol.draw(Dimensions::Start)[0] < 0.25;
+            if one_in_four { Vec3::new(9.0, 9.0, 9.0) } else { Vec3::splat(1.0) }
+        };
+        let cancel = CancelToken::default();
+        let estimate = Estimate::gather(Paths { clamp: Some(5.0), ..paths(3, 4096) }, &cancel, bright).unwrap();
+        // A quarter brings 5 instead of 9: 2 is left of 3.
+        assert!((estimate.mean.x - 2.0).abs() < 1e-3, "{estimate:?}");
+        let share = clamped_share(&[estimate], Some(5.0)).unwrap();
+        assert!((share - 1.0 / 3.0).abs() < 1e-3, "{share}");
+        assert_eq!(clamped_share(&[estimate], None), None);
+    }
+
     /// A constant has no error; a uniform number has mean 1/2 and an honest error.
     #[test]
     fn mean_and_error_of_known_integrands() {
         let cancel = CancelToken::default();
-        let constant = Estimate::gather(1, 100, &cancel, |_, _| Vec3::splat(0.3)).expect("not cancelled");
+        let constant = Estimate::gather(paths(1, 100), &cancel, |_, _| Vec3::splat(0.3)).expect("not cancelled");
         assert_eq!(constant.samples, 112);
         assert!((constant.mean - DVec3::splat(0.3_f32.into())).length() < 1e-12);
         assert!(constant.stderr.length() < 1e-12);
 
         let mut inside = 0;
         for key in 0..400 {
-            let uniform = Estimate::gather(combine(7, key), 64, &cancel, |sobol, _| {
+            let uniform = Estimate::gather(paths(combine(7, key), 64), &cancel, |sobol, _| {
                 Vec3::splat(sobol.draw(Dimensions::Start)[0].powi(4))
             })
             .expect("not cancelled");
@@ -131,6 +182,6 @@ mod tests {
     fn cancelled_is_none() {
         let cancel = CancelToken::default();
         cancel.cancel();
-        assert!(Estimate::gather(1, 100, &cancel, |_, _| Vec3::ONE).is_none());
+        assert!(Estimate::gather(paths(1, 100), &cancel, |_, _| Vec3::ONE).is_none());
     }
 }

@@ -3,7 +3,7 @@
 use super::atlas::{Atlas, Chart};
 use super::balance::energy_balance;
 use super::dilate::dilate;
-use super::gather::Estimate;
+use super::gather::{Estimate, Paths};
 use super::sites::{Site, sites};
 use super::workers::Workers;
 use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, ProgressSink, Stage};
@@ -71,14 +71,16 @@ pub fn bake_lightmap(
     settings.validate()?;
     let workers = Workers::new(settings.threads, progress, cancel)?;
     workers.announce(Stage::Prepare)?;
-    let Compiled { tracer, faults } = Compiled::new(scene);
+    let Compiled { tracer, faults, .. } = Compiled::new(scene, &settings.transport);
     refuse_what_cannot_be_baked(&tracer, &faults)?;
     let atlas = Atlas::new(scene, &tracer, settings)?;
     let (sites, overlaps) = sites(scene, &tracer, &atlas, settings);
     let work = workers.gather(
         &sites,
         |site, cancel| {
-            Estimate::gather(site.key, settings.samples_per_texel, cancel, |sobol, rays| {
+            let paths =
+                Paths { key: site.key, count: settings.samples_per_texel, clamp: settings.transport.clamp };
+            Estimate::gather(paths, cancel, |sobol, rays| {
                 let [u, v, ..] = sobol.draw(Dimensions::Start);
                 let start = site.texel.start(&tracer, Vec2::new(u, v));
                 tracer.diffuse_radiance(&start, sobol, &settings.transport, rays)
@@ -90,7 +92,7 @@ pub fn bake_lightmap(
     workers.announce(Stage::Repair)?;
     let pages = pages(&atlas, &sites, &work.results);
     let warnings = faults.into_iter().map(BakeWarning::from).chain(overlaps);
-    let report = BakeReport { energy_balance: balance, ..BakeReport::of(&work, clock.elapsed(), warnings) };
+    let report = BakeReport { energy_balance: balance, ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings) };
     let baked_lights = scene.lights.iter().filter(|light| light.faults().is_empty()).map(|light| light.id().clone());
     let mut baked_lights: Vec<StableId> = baked_lights.collect();
     baked_lights.sort();

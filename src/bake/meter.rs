@@ -1,6 +1,6 @@
 //! A light meter: irradiance at points of the world, on surfaces or in mid-air.
 
-use super::gather::{Estimate, KeyKind, key};
+use super::gather::{Estimate, KeyKind, Paths, key};
 use super::workers::Workers;
 use super::{BakeError, BakeReport, BakeWarning, CancelToken, ProgressSink, Stage};
 use crate::math::combine;
@@ -84,13 +84,13 @@ pub fn measure_irradiance(
     }
     let workers = Workers::new(*threads, progress, cancel)?;
     workers.announce(Stage::Prepare)?;
-    let Compiled { tracer, faults } = Compiled::new(scene);
+    let Compiled { tracer, faults, .. } = Compiled::new(scene, transport);
     let work = workers.gather(
         points,
         |point, cancel| {
             let start = tracer.start_at(point.position, point.normal.normalize());
             let key = key(KeyKind::Point, transport.seed, bits(point.position), bits(point.normal));
-            Estimate::gather(key, *samples_per_point, cancel, |sobol, rays| {
+            Estimate::gather(Paths { key, count: *samples_per_point, clamp: transport.clamp }, cancel, |sobol, rays| {
                 tracer.diffuse_radiance(&start, sobol, transport, rays)
             })
         },
@@ -103,7 +103,7 @@ pub fn measure_irradiance(
     };
     Ok(Measurement {
         readings: work.results.iter().map(reading).collect(),
-        report: BakeReport::of(&work, clock.elapsed(), faults.into_iter().map(BakeWarning::from)),
+        report: BakeReport::of(&work, clock.elapsed(), transport, faults.into_iter().map(BakeWarning::from)),
     })
 }
 

@@ -33,7 +33,7 @@ pub use gather::REPLICATES;
 pub use lightmap::{Lightmap, Page, Placement, bake_lightmap};
 pub use meter::{Measurement, MeterPoint, MeterReading, MeterSettings, measure_irradiance};
 pub use picture::{Picture, PictureSettings, render_picture};
-pub use plan::{BakePlan, Effect, PlannedEffect, Prediction};
+pub use plan::{BakePlan, PlannedEffect, Prediction};
 pub use progress::{CancelToken, Progress, ProgressSink, Stage};
 pub use report::{BakeReport, RelativeError};
 pub use settings::{BakeSettings, Layout};

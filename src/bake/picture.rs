@@ -1,6 +1,6 @@
 //! A path-traced picture: the reference that a baked scene is held against.
 
-use super::gather::{Estimate, KeyKind, key};
+use super::gather::{Estimate, KeyKind, Paths, key};
 use super::workers::Workers;
 use super::{BakeError, BakeReport, BakeWarning, CancelToken, ProgressSink, Stage};
 use crate::scene::{Camera, Scene};
@@ -63,7 +63,7 @@ pub fn render_picture(
     }
     let workers = Workers::new(settings.threads, progress, cancel)?;
     workers.announce(Stage::Prepare)?;
-    let Compiled { tracer, faults } = Compiled::new(scene);
+    let Compiled { tracer, faults, .. } = Compiled::new(scene, &settings.transport);
     let eye = Vec3::from(camera.world_from_camera.translation);
     let pixels: Vec<u32> = (0..width * height).collect();
     let work = workers.gather(
@@ -71,7 +71,8 @@ pub fn render_picture(
         |&pixel, cancel| {
             let corner = Vec2::new((pixel % width) as f32, (pixel / width) as f32);
             let key = key(KeyKind::Pixel, settings.transport.seed, 0, u64::from(pixel));
-            Estimate::gather(key, settings.samples_per_pixel, cancel, |sobol, rays| {
+            let paths = Paths { key, count: settings.samples_per_pixel, clamp: settings.transport.clamp };
+            Estimate::gather(paths, cancel, |sobol, rays| {
                 let [u, v, ..] = sobol.draw(Dimensions::Start);
                 let direction = ray_direction(camera, corner + Vec2::new(u, v), [width, height]);
                 tracer.camera_radiance(eye, direction, sobol, &settings.transport, rays)
@@ -84,7 +85,7 @@ pub fn render_picture(
         height,
         radiance: work.results.iter().map(|estimate| estimate.mean.as_vec3()).collect(),
         stderr: work.results.iter().map(|estimate| estimate.stderr.as_vec3()).collect(),
-        report: BakeReport::of(&work, clock.elapsed(), faults.into_iter().map(BakeWarning::from)),
+        report: BakeReport::of(&work, clock.elapsed(), &settings.transport, faults.into_iter().map(BakeWarning::from)),
     })
 }
 

@@ -1,8 +1,9 @@
 //! What a bake did, in numbers.
 
 use super::BakeWarning;
-use super::gather::{Estimate, relative_error};
+use super::gather::{Estimate, clamped_share, relative_error};
 use super::workers::Work;
+use crate::trace::{ForcedEffects, Transport};
 use std::time::Duration;
 
 /// What a bake did, in numbers.
@@ -20,8 +21,13 @@ pub struct BakeReport {
     pub wall_seconds: f64,
     /// Standard error over value, by luminance.
     pub relative_stderr: RelativeError,
-    /// Absorbed over emitted flux; `None` for a scene from which light escapes or whose sky shines.
+    /// Absorbed over emitted flux; `None` for a scene from which light escapes, whose sky shines, or whose surfaces
+    /// are not all diffuse.
     pub energy_balance: Option<f64>,
+    /// Share of the light that a clamp of bright paths took; `None` without one.
+    pub clamped_light: Option<f64>,
+    /// Effects that were forced on or off.
+    pub forced: ForcedEffects,
     /// Texels whose value a texture format could not hold.
     pub clamped: u64,
     /// What was left out, and what to do about it.
@@ -41,7 +47,12 @@ pub struct RelativeError {
 
 impl BakeReport {
     /// The report of estimates that took `wall` time.
-    pub(super) fn of(work: &Work<Estimate>, wall: Duration, warnings: impl Iterator<Item = BakeWarning>) -> Self {
+    pub(super) fn of(
+        work: &Work<Estimate>,
+        wall: Duration,
+        transport: &Transport,
+        warnings: impl Iterator<Item = BakeWarning>,
+    ) -> Self {
         Self {
             texels: work.results.len() as u64,
             samples: work.results.iter().map(|estimate| estimate.samples).sum(),
@@ -50,6 +61,8 @@ impl BakeReport {
             wall_seconds: wall.as_secs_f64(),
             relative_stderr: relative_error(&work.results),
             energy_balance: None,
+            clamped_light: clamped_share(&work.results, transport.clamp),
+            forced: transport.effects,
             clamped: 0,
             warnings: warnings.collect(),
         }

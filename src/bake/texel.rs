@@ -6,6 +6,9 @@ use crate::math::square_to_triangle;
 use crate::trace::{PathStart, Receiver, Tracer};
 use glam::{DVec2, Vec2, Vec3};
 
+/// Points along each side of a texel at which its albedo is looked up.
+const ALBEDO_GRID: u32 = 4;
+
 /// A piece of a triangle inside a texel, in weights of the triangle's second and third vertex.
 #[derive(Clone, Copy, Debug)]
 struct Patch {
@@ -96,8 +99,35 @@ impl Texel {
         }
     }
 
-    /// A point of the covered part, uniform over its area in the texel.
+    /// A start of paths at a point of the covered part, uniform over its area in the texel.
     pub(super) fn start(&self, tracer: &Tracer, u: Vec2) -> PathStart {
+        let (patch, barycentric) = self.point(u);
+        let [second, third] = barycentric;
+        let [a, b, c] = patch.normals;
+        let smooth = a * (1.0 - second - third) + b * second + c * third;
+        let flat = tracer.normal(patch.triangle);
+        let normal = smooth.try_normalize().unwrap_or(flat);
+        // Normals that point into the surface come from broken exports; the flat one is then the better guess.
+        let normal = if normal.dot(flat) > 0.0 { normal } else { flat };
+        tracer.start_on_triangle(patch.triangle, barycentric, normal)
+    }
+
+    /// Mean albedo of the covered part.
+    pub(super) fn albedo(&self, tracer: &Tracer) -> Vec3 {
+        let centres = (0..ALBEDO_GRID * ALBEDO_GRID).map(|cell| {
+            let [x, y] = [cell % ALBEDO_GRID, cell / ALBEDO_GRID];
+            Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / ALBEDO_GRID as f32
+        });
+        let albedo = |u| {
+            let (patch, barycentric) = self.point(u);
+            tracer.diffuse_albedo(patch.triangle, barycentric)
+        };
+        centres.map(albedo).sum::<Vec3>() / (ALBEDO_GRID * ALBEDO_GRID) as f32
+    }
+
+    /// A point of the covered part, uniform over its area in the texel: where, and at which weights of the second and
+    /// third vertex.
+    fn point(&self, u: Vec2) -> (&Patch, [f32; 2]) {
         let place = f64::from(u.x) * self.coverage;
         let patch =
             &self.patches[self.patches.partition_point(|patch| patch.share_end <= place).min(self.patches.len() - 1)];
@@ -110,13 +140,7 @@ impl Texel {
         let point = patch.corner + patch.edges[0] * f64::from(weights.x) + patch.edges[1] * f64::from(weights.y);
         let second = point.x.clamp(0.0, 1.0);
         let third = point.y.clamp(0.0, 1.0 - second);
-        let [a, b, c] = patch.normals;
-        let smooth = a * (1.0 - second - third) as f32 + b * second as f32 + c * third as f32;
-        let flat = tracer.normal(patch.triangle);
-        let normal = smooth.try_normalize().unwrap_or(flat);
-        // Normals that point into the surface come from broken exports; the flat one is then the better guess.
-        let normal = if normal.dot(flat) > 0.0 { normal } else { flat };
-        tracer.start_on_triangle(patch.triangle, [second as f32, third as f32], normal)
+        (patch, [second as f32, third as f32])
     }
 }
 

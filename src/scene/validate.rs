@@ -1,10 +1,11 @@
 //! Every fault of a scene, found before anything is traced.
 
-use super::{Fault, FaultKind, Instance, Light, Mesh, Scene, Subject, Topology};
+mod light;
+mod material;
+
+use super::{Fault, FaultKind, Instance, Mesh, Scene, Subject, Topology};
 use glam::{Affine3A, Vec2, Vec3};
 use std::collections::HashSet;
-
-mod material;
 
 impl Scene {
     /// Every fault in the scene, each with the name of what is at fault. Empty for a sound scene.
@@ -42,6 +43,9 @@ impl Scene {
         }
         if !is_radiance(self.sky_radiance) {
             blame(Subject::Sky, vec![FaultKind::BadEmission]);
+        }
+        if let Some(map) = &self.environment {
+            blame(Subject::Environment(map.name.clone()), map.faults());
         }
         faults
     }
@@ -134,29 +138,6 @@ impl Mesh {
     }
 }
 
-impl Light {
-    pub(crate) fn faults(&self) -> Vec<FaultKind> {
-        let Self::Rect(light) = self else { return Vec::new() };
-        let mut kinds = Vec::new();
-        if !is_radiance(light.radiance) {
-            kinds.push(FaultKind::BadEmission);
-        }
-        let is_extent = |extent: f32| extent.is_finite() && extent > 0.0;
-        if !(is_extent(light.width) && is_extent(light.height)) {
-            kinds.push(FaultKind::ZeroArea);
-        }
-        if let Some(range) = light.range
-            && (range.is_nan() || range <= 0.0)
-        {
-            kinds.push(FaultKind::BadRange { range });
-        }
-        if !is_invertible(&light.world_from_local) {
-            kinds.push(FaultKind::SingularTransform);
-        }
-        kinds
-    }
-}
-
 fn is_radiance(radiance: Vec3) -> bool {
     radiance.is_finite() && radiance.min_element() >= 0.0
 }
@@ -175,7 +156,7 @@ mod tests {
     use super::*;
     use crate::artefact::StableId;
     use crate::scene::{
-        Filter, Indices, LightmapRequest, Material, RectLight, Scattering, Standard, Texels, Texture, TextureRef, UvChannel,
+        Filter, Indices, Light, LightmapRequest, Material, RectLight, Scattering, Standard, Texels, Texture, TextureRef, UvChannel,
     };
 
     fn sound() -> Scene {

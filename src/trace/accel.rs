@@ -119,9 +119,18 @@ impl Accel {
 
     /// Whether anything lies on the open segment from `origin` to `target`.
     pub(super) fn is_blocked(&self, origin: Vec3, target: Vec3) -> bool {
-        let Some(tree) = &self.tree else {
-            return false;
-        };
+        self.meets(origin, target, |_| true)
+    }
+
+    /// Whether anything lies on the ray from `origin` in the unit `direction`.
+    pub(super) fn is_blocked_towards(&self, origin: Vec3, direction: Vec3) -> bool {
+        self.meets_towards(origin, direction, |_| true)
+    }
+
+    /// Whether `stops` says so of anything that lies on the open segment from `origin` to `target`. Asks for each
+    /// triangle once at most, in no order.
+    #[inline]
+    pub(super) fn meets(&self, origin: Vec3, target: Vec3, stops: impl FnMut(Hit) -> bool) -> bool {
         let (origin, target) = (origin * self.scale, target * self.scale);
         let offset = target - origin;
         let distance = offset.length();
@@ -129,25 +138,46 @@ impl Accel {
             return false;
         }
         let direction = offset / distance;
+        let end = End { position: target, inwards: -direction };
+        self.search(origin, direction, Some((end, distance)), stops)
+    }
+
+    /// The same for a ray without an end, in a unit direction.
+    #[inline]
+    pub(super) fn meets_towards(&self, origin: Vec3, direction: Vec3, stops: impl FnMut(Hit) -> bool) -> bool {
+        self.search(origin * self.scale, direction, None, stops)
+    }
+
+    /// The search itself, in the tree's units.
+    #[inline]
+    fn search(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        end: Option<(End, f32)>,
+        mut stops: impl FnMut(Hit) -> bool,
+    ) -> bool {
+        let Some(tree) = &self.tree else {
+            return false;
+        };
         let sheared = ShearedRay::new(origin, direction);
+        let distance = end.map_or(f32::INFINITY, |(_, distance)| distance);
         let ray = tree_ray(origin, direction, distance);
         let start = End { position: origin, inwards: direction };
-        let end = End { position: target, inwards: -direction };
         !tree.ray_traverse_miss(ray, |_, index| {
-            let triangle = &self.triangles[index].0;
-            match sheared.cross(triangle) {
-                Some(crossing)
-                    if start.is_behind(crossing.t, crossing.t_error, triangle)
-                        && end.is_behind(
-                            distance - crossing.t,
-                            crossing.t_error + 4.0 * f32::EPSILON * distance,
-                            triangle,
-                        ) =>
-                {
-                    // The tree asks for a distance below the ray's end, which rounding could deny.
-                    crossing.t.min(0.5 * distance)
-                }
-                _ => f32::INFINITY,
+            let (corners, triangle) = &self.triangles[index];
+            let Some(Crossing { t, t_error, barycentric }) = sheared.cross(corners) else {
+                return f32::INFINITY;
+            };
+            let is_before_end = end.is_none_or(|(end, distance)| {
+                end.is_behind(distance - t, t_error + 4.0 * f32::EPSILON * distance, corners)
+            });
+            let is_between = start.is_behind(t, t_error, corners) && is_before_end;
+            if is_between && stops(Hit { triangle: *triangle, t: t / self.scale, barycentric }) {
+                // The tree asks for a distance below the ray's end, which rounding could deny.
+                t.min(0.5 * distance)
+            } else {
+                f32::INFINITY
             }
         })
     }

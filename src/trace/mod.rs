@@ -3,23 +3,31 @@
 //! [`Transport`] says how light is followed; what asks for it lies to the right.
 
 mod accel;
+mod attributes;
 mod effects;
+mod kernel;
 mod texture;
 mod bsdf;
+mod census;
 mod closed;
 mod compile;
 mod light;
+mod material;
 mod mis;
 mod path;
 mod sampler;
+mod shade;
 mod surface;
+mod tangents;
 #[cfg(test)]
 mod testing;
 mod tracer;
 mod transport;
 mod triangle;
 
+pub(crate) use census::Census;
 pub(crate) use compile::Compiled;
+pub use effects::{Effect, EffectSet, ForcedEffects};
 pub(crate) use path::PathStart;
 pub(crate) use sampler::{Dimensions, Sampler, Sobol};
 pub(crate) use tracer::Receiver;

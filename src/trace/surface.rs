@@ -64,6 +64,11 @@ impl Placement {
         size * f64::EPSILON * 2.0
     }
 
+    /// The world direction of a local one, of unit length or zero.
+    pub(super) fn direction(&self, local: Vec3) -> Vec3 {
+        (self.matrix * local.as_dvec3()).normalize_or_zero().as_vec3()
+    }
+
     /// The world direction of a local normal, of unit length or zero.
     pub(super) fn normal(&self, local: Vec3) -> Vec3 {
         // Cofactors, not the inverse transpose: they differ by the determinant, and only its sign matters.

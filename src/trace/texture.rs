@@ -32,6 +32,14 @@ impl Decoded {
         Self { size: [texture.width as i32, texture.height as i32], wrap: texture.wrap, filter: texture.filter, texels }
     }
 
+    /// Memory that it holds [bytes].
+    pub(super) fn memory_bytes(&self) -> u64 {
+        match &self.texels {
+            Store::Bytes { texels, .. } => size_of_val(&**texels) as u64,
+            Store::Floats(texels) => size_of_val(&**texels) as u64,
+        }
+    }
+
     /// The value at a place; the unit square is the whole texture, v downwards.
     pub(super) fn at(&self, uv: Vec2) -> Vec4 {
         let place = |axis: usize| {

@@ -1,35 +1,50 @@
 //! A scene compiled for rays.
 
 use super::accel::Accel;
-use super::light::Emitters;
+use super::attributes::Attributes;
+use super::bsdf::AlbedoTables;
+use super::effects::{Effect, EffectSet};
+use super::kernel::{LAYERED, PASSING, TEXTURED};
+use super::light::Lights;
+use super::material::Surface;
+use super::shade::Place;
 use super::surface::TriangleShape;
+use super::texture::Decoded;
+use super::transport::Transport;
 use glam::{DVec3, Vec3};
+use std::sync::Arc;
 
 /// No emitter.
 pub(super) const NOT_EMISSIVE: u32 = u32::MAX;
 
-/// How a surface answers light.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Surface {
-    pub(super) diffuse_albedo: Vec3,
-    pub(super) emitted_radiance: Vec3,
-    pub(super) double_sided: bool,
-}
+/// No triangle.
+pub(super) const NO_TRIANGLE: u32 = u32::MAX;
 
 /// A scene compiled for rays. Independent of the order in which the scene lists its parts.
 pub struct Tracer {
-    pub(super) accel: Accel,
+    pub(super) accel: Arc<Accel>,
     pub(super) triangles: Vec<TriangleShape>,
     /// Per triangle, index into `surfaces`.
     pub(super) surface_of: Vec<u32>,
     pub(super) surfaces: Vec<Surface>,
-    /// Per triangle, index into `emitters` or [`NOT_EMISSIVE`].
+    /// Those that surfaces look up, by the scene's numbers.
+    pub(super) textures: Vec<Option<Decoded>>,
+    pub(super) attributes: Attributes,
+    /// There if the kernel has layered surfaces.
+    pub(super) albedo_tables: Option<Arc<AlbedoTables>>,
+    /// Per triangle, index into `lights` or [`NOT_EMISSIVE`].
     pub(super) emitter_of: Vec<u32>,
-    pub(super) emitters: Emitters,
+    /// Per emitter, its (first) triangle or [`NO_TRIANGLE`].
+    pub(super) triangle_of: Vec<u32>,
+    pub(super) lights: Lights,
     pub(super) sky_radiance: Vec3,
     /// Length of the diagonal of the scene's bounds [m].
     pub(super) extent: f32,
     pub(super) receivers: Vec<Receiver>,
+    /// What is simulated.
+    pub(super) effects: EffectSet,
+    /// The kernel that does it.
+    pub(super) kernel: u32,
 }
 
 /// What a ray meets.
@@ -66,6 +81,21 @@ impl Tracer {
         !self.accel.is_blocked(from, to)
     }
 
+    /// What is simulated.
+    pub(crate) fn effects(&self) -> EffectSet {
+        self.effects
+    }
+
+    /// Bounces before a path is cut.
+    pub(crate) fn max_bounces(&self, transport: &Transport) -> Option<u32> {
+        if self.effects.has(Effect::Interreflection) { transport.max_bounces } else { Some(0) }
+    }
+
+    /// Whether every surface is Lambert's and blocks what it meets.
+    pub(crate) fn is_diffuse(&self) -> bool {
+        self.kernel & (LAYERED | PASSING) == 0
+    }
+
     /// Objects that ask for a lightmap and can have one, ordered by id.
     pub(crate) fn receivers(&self) -> &[Receiver] {
         &self.receivers
@@ -73,12 +103,7 @@ impl Tracer {
 
     /// Whether anything gives light.
     pub(crate) fn has_light(&self) -> bool {
-        !self.emitters.is_empty() || self.sky_radiance != Vec3::ZERO
-    }
-
-    /// Radiance of the sky [cd/m²].
-    pub(crate) fn sky_radiance(&self) -> Vec3 {
-        self.sky_radiance
+        !self.lights.is_empty() || self.sky_radiance != Vec3::ZERO
     }
 
     /// Triangles in the world.
@@ -86,14 +111,13 @@ impl Tracer {
         self.triangles.len()
     }
 
-    /// Glowing shapes.
-    pub(crate) fn emitter_count(&self) -> usize {
-        self.emitters.len()
-    }
-
-    /// Diffuse albedo of a triangle.
-    pub(crate) fn diffuse_albedo(&self, triangle: u32) -> Vec3 {
-        self.surfaces[self.surface_of[triangle as usize] as usize].diffuse_albedo
+    /// Albedo of a diffuse surface at these weights of a triangle's second and third vertex.
+    pub(crate) fn diffuse_albedo(&self, triangle: u32, barycentric: [f32; 2]) -> Vec3 {
+        let surface = self.surface(triangle);
+        if self.kernel & TEXTURED == 0 {
+            return self.albedo::<0>(surface, Place { triangle, barycentric });
+        }
+        self.albedo::<TEXTURED>(surface, Place { triangle, barycentric })
     }
 
     /// World vertices of a triangle, counter-clockwise seen from its front [m].
@@ -111,16 +135,22 @@ impl Tracer {
         self.triangles[triangle as usize].area()
     }
 
-    /// Flux that all sources give off, per channel [lm]; `None` under a sky, whose flux has no bound.
+    /// Flux that all sources give off, per channel [lm]; `None` under a sky, whose flux has no bound, and where a
+    /// source's cannot be told.
     pub(crate) fn emitted_flux(&self) -> Option<DVec3> {
-        (self.sky_radiance == Vec3::ZERO).then(|| {
-            self.emitters
-                .iter()
-                .map(|emitter| {
-                    let sides = if emitter.double_sided { 2.0 } else { 1.0 };
-                    emitter.radiance.as_dvec3() * (sides * std::f64::consts::PI * emitter.area())
-                })
-                .sum()
-        })
+        if self.sky_radiance == Vec3::ZERO { self.lights.flux() } else { None }
+    }
+
+    /// Flux that all that is somewhere gives off, per channel [lm]; `None` where it cannot be told.
+    pub(crate) fn area_light_flux(&self) -> Option<DVec3> {
+        self.lights.flux()
+    }
+
+    /// Memory that it holds, as far as it grows with the scene [bytes].
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        // A triangle with its share of the tree (measured: about 60 bytes of nodes each).
+        let triangles = self.triangles.len() as u64 * 160;
+        let textures: u64 = self.textures.iter().flatten().map(Decoded::memory_bytes).sum();
+        triangles + textures + self.attributes.memory_bytes()
     }
 }

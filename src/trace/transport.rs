@@ -1,19 +1,21 @@
 //! How light is followed: the choices that change noise and, for a bounce cap, truth.
 
+use super::effects::ForcedEffects;
+
 /// Which samples an estimate of light from sources is made of. All three have the same mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Estimator {
     /// Light and surface samples together, weighted by multiple importance sampling (Veach and Guibas 1995).
     #[default]
     Mis,
-    /// Points on the sources only.
+    /// Points on the sources only; and what mirrors and clear glass show, which has no other way.
     Light,
-    /// Directions from the surface only.
+    /// Directions from the surface only; and points and single directions that shine, which no ray meets.
     Bsdf,
 }
 
 /// How light is followed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Transport {
     /// Which samples make an estimate.
     pub estimator: Estimator,
@@ -21,4 +23,8 @@ pub struct Transport {
     pub max_bounces: Option<u32>,
     /// Changes every random number, and nothing else.
     pub seed: u64,
+    /// The most that one path may bring [cd/m²]: takes out bright specks and, with them, light. `None` takes nothing.
+    pub clamp: Option<f32>,
+    /// Effects that are simulated, or not, whatever the scene calls for.
+    pub effects: ForcedEffects,
 }

@@ -3,6 +3,7 @@
 use crate::parse;
 use bevy_kiln::output::OutputFormat;
 use bevy_kiln::plugin::EmissiveUnit;
+use bevy_kiln::trace::Effect;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::Vec3;
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -62,6 +63,15 @@ pub(crate) struct SceneArgs {
     /// Changes every random number, and nothing else
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
+    /// The most that one path may bring (cd/m²): takes out bright specks and, with them, light
+    #[arg(long, value_name = "RADIANCE", value_parser = parse::clamp, allow_hyphen_values = true)]
+    pub(crate) clamp: Option<f32>,
+    /// Simulate an effect although the scene does not call for it (see kiln plan for their names)
+    #[arg(long, value_name = "EFFECT,...", value_delimiter = ',', value_parser = parse::effect)]
+    pub(crate) with: Vec<Effect>,
+    /// Leave an effect out although the scene calls for it: its light is then missing
+    #[arg(long, value_name = "EFFECT,...", value_delimiter = ',', value_parser = parse::effect)]
+    pub(crate) without: Vec<Effect>,
     /// Threads that trace [default: all cores]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,

@@ -7,6 +7,7 @@ use crate::scene;
 use crate::talk::{Talk, warn};
 use bevy_kiln::bake::{BakePlan, BakeReport, CancelToken, bake_lightmap};
 use bevy_kiln::output::{WrittenLightmap, write_lightmap};
+use bevy_kiln::trace::Effect;
 use serde_json::json;
 
 pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> {
@@ -55,6 +56,11 @@ fn summary(report: &BakeReport, written: &WrittenLightmap, warnings: &[String]) 
         "wall_seconds": report.wall_seconds,
         "relative_stderr": { "mean": error.mean, "p95": error.p95, "max": error.max },
         "energy_balance": report.energy_balance,
+        "clamped_light": report.clamped_light,
+        "forced": {
+            "on": report.forced.on.iter().map(Effect::name).collect::<Vec<_>>(),
+            "off": report.forced.off.iter().map(Effect::name).collect::<Vec<_>>(),
+        },
         "clamped": written.clamped,
         "warnings": warnings,
         "files": written.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>(),

@@ -2,6 +2,7 @@
 
 use crate::args::Bounces;
 use bevy_kiln::plugin::EmissiveUnit;
+use bevy_kiln::trace::Effect;
 use glam::Vec3;
 
 pub(crate) fn emissive(text: &str) -> Result<EmissiveUnit, String> {
@@ -36,6 +37,18 @@ pub(crate) fn max_bounces(text: &str) -> Result<Bounces, String> {
     text.parse().map(|bounces| Bounces(Some(bounces))).map_err(|_| "give a whole number, or none for no cap".to_owned())
 }
 
+pub(crate) fn clamp(text: &str) -> Result<f32, String> {
+    let most = finite(text).filter(|&most| most > 0.0);
+    most.ok_or_else(|| "give a radiance above 0, or leave it out to clamp nothing".to_owned())
+}
+
+pub(crate) fn effect(text: &str) -> Result<Effect, String> {
+    Effect::from_name(text).ok_or_else(|| {
+        let names: Vec<&str> = Effect::ALL.into_iter().map(Effect::name).collect();
+        format!("there is no such effect; there are {}", names.join(", "))
+    })
+}
+
 pub(crate) fn fov(text: &str) -> Result<f32, String> {
     let degrees = finite(text).filter(|&degrees| degrees > 0.0 && degrees < 180.0);
     degrees.ok_or_else(|| "give an angle between 0 and 180 degrees".to_owned())
@@ -67,6 +80,9 @@ mod tests {
         assert!(max_bounces("-1").is_err());
         assert_eq!(size("640x480"), Ok((640, 480)));
         assert!(size("0x1").is_err() && size("640").is_err());
+        assert_eq!(effect("cut-outs"), Ok(Effect::CutOuts));
+        assert!(effect("magic").is_err_and(|error| error.contains("clear-panes")));
+        assert!(clamp("0").is_err() && clamp("3") == Ok(3.0));
         assert!(fov("180").is_err() && fov("45").is_ok());
     }
 }

@@ -28,7 +28,14 @@ fn summary(plan: &BakePlan, warnings: &[String]) -> serde_json::Value {
     let effects = plan
         .effects
         .iter()
-        .map(|effect| json!({ "effect": effect.effect.to_string(), "on": effect.on, "reason": effect.reason }));
+        .map(|effect| {
+            json!({
+                "effect": effect.effect.name(),
+                "on": effect.on,
+                "reason": effect.reason,
+                "cost_share": effect.cost_share,
+            })
+        });
     let predicted =
         plan.predicted.iter().map(|prediction| json!({ "error": prediction.error, "seconds": prediction.seconds }));
     json!({

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use bevy_kiln::bake::{BakeSettings, CancelToken, Layout};
 use bevy_kiln::plugin::windowless::open_scene;
 use bevy_kiln::plugin::{Extraction, RangeWindow, SceneSettings, extract_scene};
-use bevy_kiln::trace::{Estimator, Transport};
+use bevy_kiln::trace::{Estimator, ForcedEffects, Transport};
 use glam::Vec3;
 
 /// Loads and reads the scene.
@@ -38,7 +38,11 @@ pub(crate) fn transport(args: &SceneArgs) -> Transport {
         EstimatorArg::Light => Estimator::Light,
         EstimatorArg::Bsdf => Estimator::Bsdf,
     };
-    Transport { estimator, max_bounces: args.max_bounces.0, seed: args.seed }
+    let effects = ForcedEffects {
+        on: args.with.iter().copied().collect(),
+        off: args.without.iter().copied().collect(),
+    };
+    Transport { estimator, max_bounces: args.max_bounces.0, seed: args.seed, clamp: args.clamp, effects }
 }
 
 pub(crate) fn bake_settings(scene: &SceneArgs, layout: &LayoutArgs) -> Result<BakeSettings, Failure> {

@@ -1,6 +1,7 @@
 //! What a person reads.
 
 use bevy_kiln::bake::{BakePlan, BakeReport};
+use bevy_kiln::trace::Effect;
 use std::fmt::Display;
 use std::io::Write;
 
@@ -27,9 +28,11 @@ impl Talk {
 
     pub(crate) fn plan(self, plan: &BakePlan) {
         self.say("plan");
+        let width = Effect::ALL.into_iter().map(|effect| effect.name().len()).max().unwrap_or(0);
         for effect in &plan.effects {
-            let mark = if effect.on { "+" } else { "-" };
-            self.say(format_args!("  {mark} {}: {}", effect.effect, effect.reason));
+            let mark = if effect.on { "on " } else { "off" };
+            let share = effect.cost_share.map_or_else(String::new, |share| format!("{:.0} %", 100.0 * share));
+            self.say(format_args!("  {:width$}  {mark}  {share:>5}  {}", effect.effect.name(), effect.reason));
         }
         let mebibytes = plan.memory_bytes as f64 / f64::from(1 << 20);
         let pages = if plan.pages == 1 { "page" } else { "pages" };
@@ -57,9 +60,18 @@ impl Talk {
             100.0 * error.p95,
             100.0 * error.max
         ));
+        if let Some(taken) = report.clamped_light {
+            self.say(format_args!("  the clamp took {:.3} % of the light", 100.0 * taken));
+        }
+        for (how, effects) in [("on", report.forced.on), ("off", report.forced.off)] {
+            let names: Vec<&str> = effects.iter().map(Effect::name).collect();
+            if !names.is_empty() {
+                self.say(format_args!("  forced {how}: {}", names.join(", ")));
+            }
+        }
         match balance {
             Some(balance) => self.say(format_args!("  energy balance: {balance:.5} (absorbed / emitted)")),
-            None => self.say("  energy balance: none, open scene"),
+            None => self.say("  energy balance: none (light escapes, was cut, or surfaces are not all diffuse)"),
         }
     }
 }

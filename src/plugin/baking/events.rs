@@ -3,7 +3,7 @@
 
 use super::settings::SceneSettings;
 use crate::bake::{BakeSettings, Layout, Lightmap, Progress, Stage};
-use crate::trace::{Estimator, Transport};
+use crate::trace::{Estimator, ForcedEffects, Transport};
 use bevy::prelude::*;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -53,6 +53,11 @@ pub struct BakeLightmaps {
     pub estimator: Estimator,
     /// Changes every random number, and nothing else.
     pub seed: u64,
+    /// The most that one path may bring [cd/m²]: takes out bright specks and, with them, light. `None` takes nothing.
+    pub clamp: Option<f32>,
+    /// Effects that are simulated, or not, whatever the scene calls for.
+    #[reflect(ignore)]
+    pub effects: ForcedEffects,
     /// Threads that trace; 0 for all cores.
     pub threads: u32,
     /// How the textures hold their texels.
@@ -70,6 +75,8 @@ impl Default for BakeLightmaps {
             max_bounces: core.transport.max_bounces,
             estimator: core.transport.estimator,
             seed: core.transport.seed,
+            clamp: core.transport.clamp,
+            effects: core.transport.effects,
             threads: 0,
             format: LightmapFormat::default(),
         }
@@ -80,7 +87,13 @@ impl BakeLightmaps {
     /// The same in the baker's own words.
     pub fn bake_settings(&self) -> BakeSettings {
         BakeSettings {
-            transport: Transport { estimator: self.estimator, max_bounces: self.max_bounces, seed: self.seed },
+            transport: Transport {
+                estimator: self.estimator,
+                max_bounces: self.max_bounces,
+                seed: self.seed,
+                clamp: self.clamp,
+                effects: self.effects,
+            },
             samples_per_texel: self.samples_per_texel,
             density: self.density,
             layout: match self.layout {

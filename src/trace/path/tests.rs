@@ -1,10 +1,12 @@
 //! The estimator as a whole, in furnaces, whose answer is known: a closed room of one albedo ρ whose walls all glow
 //! with Le shows Le / (1 − ρ) in every direction. And that the check which says so would notice if it did not.
 
-use super::{MAX_SURVIVAL, PathStart, survival_probability};
+use super::PathStart;
+use super::walk::{MAX_SURVIVAL, ROULETTE_THROUGHPUT, survival_probability};
 use crate::math::testing::{Random, mean_and_error, mean_within};
 use crate::math::{Frame, combine, square_to_cosine_hemisphere, square_to_triangle};
 use crate::scene::Material;
+use crate::trace::light::{End, LightContext};
 use crate::trace::mis::power_heuristic;
 use crate::trace::sampler::{Dimensions, Sampler};
 use crate::trace::testing::Shape;
@@ -81,12 +83,14 @@ fn second_opinion(tracer: &Tracer, start: &PathStart, sampler: &Sobol, fault: Fa
         let frame = Frame::new(vertex.normal);
         let weigh = |own: f32, other: f32| if fault == Fault::NoWeights { 1.0 } else { power_heuristic(own, other) };
         let [u, v, choice, _] = sampler.draw(Dimensions::Light { vertex: number });
-        if let Some(sample) = tracer.emitters.sample(vertex.position, Vec2::new(u, v), choice) {
-            let cosine = vertex.normal.dot(sample.wi);
-            if cosine > 0.0 && tracer.is_visible(vertex.origin, sample.target) {
-                let pdf = if fault == Fault::LightPdf { 1.05 * sample.pdf } else { sample.pdf };
+        let ctx = LightContext { position: vertex.position, normal: Some(vertex.normal) };
+        if let Some(sample) = tracer.lights.sample(&ctx, Vec2::new(u, v), choice) {
+            let (cosine, pdf) = (vertex.normal.dot(sample.wi), sample.pdf.expect("the walls have a size"));
+            let End::At(target) = sample.end else { unreachable!("the walls are somewhere") };
+            if cosine > 0.0 && tracer.is_visible(vertex.origin, target) {
+                let value = if fault == Fault::LightPdf { sample.value / 1.05 } else { sample.value };
                 let scattered = albedo * FRAC_1_PI * if fault == Fault::MissingCosine { 1.0 } else { cosine };
-                radiance += throughput * scattered * sample.radiance * weigh(sample.pdf, cosine * FRAC_1_PI) / pdf;
+                radiance += throughput * scattered * value * weigh(pdf, cosine * FRAC_1_PI);
             }
         }
         let [u, v, u_survive, _] = sampler.draw(Dimensions::Scatter { vertex: number });
@@ -98,13 +102,13 @@ fn second_opinion(tracer: &Tracer, start: &PathStart, sampler: &Sobol, fault: Fa
         };
         if tracer.normal(hit.triangle).dot(wi) < 0.0 {
             let emitter = tracer.emitter_of[hit.triangle as usize];
-            let pdf = tracer.emitters.pdf(emitter, vertex.position, wi, hit.t);
-            radiance += throughput * tracer.emitters.get(emitter).radiance * weigh(local.z * FRAC_1_PI, pdf);
+            let pdf = tracer.lights.pdf(emitter, &ctx, wi, hit.t);
+            radiance += throughput * tracer.lights.get(emitter).strength * weigh(local.z * FRAC_1_PI, pdf);
         }
-        albedo = tracer.diffuse_albedo(hit.triangle);
+        albedo = tracer.diffuse_albedo(hit.triangle, hit.barycentric);
         let survival = match fault {
-            Fault::UnclampedRoulette => (throughput * albedo).max_element() / super::ROULETTE_THROUGHPUT,
-            _ => survival_probability(throughput * albedo),
+            Fault::UnclampedRoulette => (throughput * albedo).max_element() / ROULETTE_THROUGHPUT,
+            _ => survival_probability((throughput * albedo).max_element()),
         };
         if u_survive >= survival || fault == Fault::DroppedBounces && number >= 5 {
             break;
@@ -162,15 +166,15 @@ fn roulette_loses_nothing() {
     let mut random = Random::new(1);
     for step in 1..200 {
         let throughput = Vec3::new(0.3, 1.0, 0.7) * 0.02 * step as f32;
-        let survival = survival_probability(throughput);
+        let survival = survival_probability(throughput.max_element());
         assert!(survival > 0.0 && survival <= MAX_SURVIVAL, "{throughput}: {survival}");
         // One number in each of a thousand equal intervals.
         let survivor = |index| if (index as f32 + random.unit()) / 1000.0 < survival { 1.0 / survival } else { 0.0 };
         let mean = (0..1000).map(survivor).sum::<f32>() / 1000.0;
         assert!((mean - 1.0).abs() <= 0.0011 / survival, "{throughput}: {mean}");
     }
-    assert_eq!(survival_probability(Vec3::ZERO), 0.0);
-    assert_eq!(survival_probability(Vec3::splat(1e9)), MAX_SURVIVAL);
-    let dim = survival_probability(Vec3::splat(0.01));
-    assert!((survival_probability(Vec3::splat(0.02)) - 2.0 * dim).abs() < 1e-6);
+    assert_eq!(survival_probability(0.0), 0.0);
+    assert_eq!(survival_probability(1e9), MAX_SURVIVAL);
+    let dim = survival_probability(0.01);
+    assert!((survival_probability(0.02) - 2.0 * dim).abs() < 1e-6);
 }

@@ -1,0 +1,97 @@
+//! The pilot: a few texels, traced to tell what all of them will cost.
+
+use crate::bake::gather::{Estimate, Paths, relative_error};
+use crate::bake::plan::Prediction;
+use crate::bake::sites::Site;
+use crate::bake::workers::Workers;
+use crate::bake::{BakeError, BakeSettings};
+use crate::scene::Scene;
+use crate::trace::{Compiled, Dimensions, Effect, Sampler, Tracer};
+use glam::Vec2;
+use std::time::Instant;
+
+/// Texels that the pilot traces.
+const TEXELS: usize = 256;
+
+/// Paths from each of them.
+const PATHS: u32 = 64;
+
+/// Texels and paths of the pilots that price a single effect, and how often each is run.
+const SHARE_TEXELS: usize = 64;
+const SHARE_PATHS: u32 = 64;
+const SHARE_RUNS: usize = 3;
+
+/// Errors that a price is given for: half-widths of the 95 % interval over the value.
+const PRICED_ERRORS: [f64; 5] = [0.10, 0.05, 0.02, 0.01, 0.005];
+
+/// A few texels that stand for all.
+pub(super) struct Pilot<'a> {
+    sites: &'a [Site],
+    settings: &'a BakeSettings,
+    workers: &'a Workers<'a>,
+}
+
+impl<'a> Pilot<'a> {
+    pub(super) fn new(sites: &'a [Site], settings: &'a BakeSettings, workers: &'a Workers<'a>) -> Self {
+        Self { sites, settings, workers }
+    }
+
+    /// Times for a few errors.
+    pub(super) fn predict(&self, tracer: &Tracer) -> Result<Vec<Prediction>, BakeError> {
+        let (estimates, seconds) = self.trace(tracer, [TEXELS, PATHS as usize])?;
+        let seconds = seconds * self.sites.len() as f64 / estimates.len().max(1) as f64;
+        let half_width = 1.96 * relative_error(&estimates).mean;
+        let price = |error: f64| Prediction { error, seconds: seconds * (half_width / error).powi(2) };
+        Ok(PRICED_ERRORS.into_iter().map(price).collect())
+    }
+
+    /// Share of the time that each effect which is on costs: what is saved where it is forced off.
+    pub(super) fn cost_shares(&self, scene: &Scene, tracer: &Tracer) -> Result<Vec<(Effect, f64)>, BakeError> {
+        let effects: Vec<Effect> = tracer.effects().iter().collect();
+        let without: Vec<Tracer> = effects.iter().map(|&effect| self.without(scene, tracer, effect)).collect();
+        let mut all = Vec::new();
+        let mut rest: Vec<Vec<f64>> = vec![Vec::new(); effects.len()];
+        // In turns, so that whatever else the machine does falls on all alike.
+        for _ in 0..SHARE_RUNS {
+            all.push(self.time(tracer)?);
+            for (seconds, tracer) in rest.iter_mut().zip(&without) {
+                seconds.push(self.time(tracer)?);
+            }
+        }
+        let all = least(&all);
+        let share = |seconds: &Vec<f64>| (1.0 - least(seconds) / all.max(1e-9)).clamp(0.0, 1.0);
+        Ok(effects.into_iter().zip(rest.iter().map(share)).collect())
+    }
+
+    fn without(&self, scene: &Scene, tracer: &Tracer, effect: Effect) -> Tracer {
+        let mut transport = self.settings.transport;
+        transport.effects.off = transport.effects.off.with(effect);
+        Compiled::sharing_tree(scene, &transport, tracer).tracer
+    }
+
+    fn time(&self, tracer: &Tracer) -> Result<f64, BakeError> {
+        Ok(self.trace(tracer, [SHARE_TEXELS, SHARE_PATHS as usize])?.1)
+    }
+
+    /// Traces texels spread evenly over all, and tells the time it took [s].
+    fn trace(&self, tracer: &Tracer, [texels, paths]: [usize; 2]) -> Result<(Vec<Estimate>, f64), BakeError> {
+        let step = (self.sites.len() / texels).max(1);
+        let pilot: Vec<&Site> = self.sites.iter().step_by(step).collect();
+        let transport = &self.settings.transport;
+        let clock = Instant::now();
+        let estimates = self.workers.gather_quietly(&pilot, |site, cancel| {
+            let paths = Paths { key: site.key, count: paths as u32, clamp: transport.clamp };
+            Estimate::gather(paths, cancel, |sobol, rays| {
+                let [u, v, ..] = sobol.draw(Dimensions::Start);
+                let start = site.texel.start(tracer, Vec2::new(u, v));
+                tracer.diffuse_radiance(&start, sobol, transport, rays)
+            })
+        })?;
+        Ok((estimates, clock.elapsed().as_secs_f64()))
+    }
+}
+
+/// The least of several times: what the machine took when nothing else disturbed it.
+fn least(seconds: &[f64]) -> f64 {
+    seconds.iter().copied().fold(f64::INFINITY, f64::min)
+}

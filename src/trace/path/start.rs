@@ -1,0 +1,61 @@
+//! Where paths start.
+
+use crate::trace::surface::TriangleShape;
+use crate::trace::tracer::Tracer;
+use glam::Vec3;
+
+/// Where paths start, and which way it faces.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PathStart {
+    /// The point itself [m].
+    pub(super) position: Vec3,
+    /// The point moved off its surface; where rays start [m].
+    pub(super) origin: Vec3,
+    /// Unit normal that receives.
+    pub(super) normal: Vec3,
+    /// Unit normal of the flat surface, on the side that receives.
+    pub(super) geometric_normal: Vec3,
+}
+
+impl PathStart {
+    /// A start on a triangle, on the side of `normal`.
+    pub(in crate::trace) fn new(triangle: &TriangleShape, position: Vec3, normal: Vec3) -> Self {
+        let side = if triangle.normal.dot(normal) < 0.0 { -1.0 } else { 1.0 };
+        Self { position, origin: triangle.leave(position, normal), normal, geometric_normal: side * triangle.normal }
+    }
+
+    /// Where rays start [m].
+    pub(in crate::trace) fn origin(&self) -> Vec3 {
+        self.origin
+    }
+
+    /// Unit normal that receives.
+    pub(in crate::trace) fn normal(&self) -> Vec3 {
+        self.normal
+    }
+
+    /// A start in mid-air.
+    pub(in crate::trace) fn free(position: Vec3, normal: Vec3) -> Self {
+        Self { position, origin: position, normal, geometric_normal: normal }
+    }
+}
+
+impl Tracer {
+    /// A start of paths on a triangle, at these weights of its second and third vertex, on the side of `normal`, the
+    /// unit normal that receives.
+    pub(crate) fn start_on_triangle(&self, triangle: u32, barycentric: [f32; 2], normal: Vec3) -> PathStart {
+        let shape = &self.triangles[triangle as usize];
+        PathStart::new(shape, shape.position(barycentric), normal)
+    }
+
+    /// A start of paths at a point of the world. Within 1e-5 of the scene's extent from a surface, on the side that
+    /// `normal` points to, the point counts as lying on it.
+    pub(crate) fn start_at(&self, position: Vec3, normal: Vec3) -> PathStart {
+        let reach = 1e-5 * self.extent;
+        let above = position + normal * reach;
+        match self.accel.closest(above, -normal, 2.0 * reach) {
+            Some(hit) => self.start_on_triangle(hit.triangle, hit.barycentric, normal),
+            None => PathStart::free(position, normal),
+        }
+    }
+}
