@@ -6,6 +6,7 @@
 
 mod colour;
 mod distribution;
+mod distribution_2d;
 mod form_factor;
 mod frame;
 mod hash;
@@ -24,6 +25,7 @@ mod tests;
 
 pub use colour::luminance;
 pub use distribution::{Discrete, DiscreteSample, DistributionError};
+pub use distribution_2d::{Cell, Discrete2d};
 pub use form_factor::{
     coaxial_disk, coaxial_disks, corner_parallel_rectangle, corner_perpendicular_rectangle, parallel_rectangles,
     perpendicular_rectangles, sphere_above_horizon,
@@ -41,6 +43,7 @@ pub use units::{
 };
 pub use warp::{
     cosine_hemisphere_pdf, cosine_hemisphere_to_square, disk_pdf, disk_to_square, square_to_cosine_hemisphere,
-    square_to_disk, square_to_triangle, square_to_uniform_hemisphere, triangle_pdf, triangle_to_square,
-    uniform_hemisphere_pdf, uniform_hemisphere_to_square,
+    square_to_disk, square_to_triangle, square_to_uniform_cone, square_to_uniform_hemisphere,
+    square_to_uniform_sphere, triangle_pdf, triangle_to_square, uniform_cone_pdf, uniform_cone_to_square,
+    uniform_hemisphere_pdf, uniform_hemisphere_to_square, uniform_sphere_pdf, uniform_sphere_to_square,
 };

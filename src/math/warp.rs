@@ -1,4 +1,4 @@
-//! Maps from the unit square to a disk, to hemispheres around +Z and to a triangle, each with its density and its
+//! Maps from the unit square to a disk, to hemispheres and cones around +Z, to the sphere and to a triangle, each with its density and its
 //! inverse. All keep neighbours together, so that a stratified or low-discrepancy set stays one. Does not turn the
 //! result into world space: [`Frame`](super::Frame) does.
 //!
@@ -103,6 +103,48 @@ pub fn cosine_hemisphere_pdf(w: Vec3) -> f32 {
 #[inline]
 pub fn cosine_hemisphere_to_square(w: Vec3) -> Vec2 {
     disk_to_square(w.xy())
+}
+
+/// Unit square → directions within a cone around +Z, uniform in solid angle. `height` is 1 − cos of the cone's half
+/// angle, in [0, 2]: its digits are what the map's digits rest on, however narrow the cone.
+#[inline]
+pub fn square_to_uniform_cone(u: Vec2, height: f32) -> Vec3 {
+    let p = polar(u);
+    // 1 − cos θ grows with the area on the disk, as the solid angle does.
+    let drop = height * p.radius * p.radius;
+    let sine_over_radius = (height * (2.0 - drop)).max(0.0).sqrt();
+    (p.radius * sine_over_radius * Vec2::from_angle(p.angle)).extend(1.0 - drop)
+}
+
+/// The density of [`square_to_uniform_cone`] within the cone: 1/(2π `height`) [1/sr].
+#[inline]
+pub fn uniform_cone_pdf(height: f32) -> f32 {
+    0.5 * FRAC_1_PI / height
+}
+
+/// Directions within a cone → unit square: the inverse of [`square_to_uniform_cone`]. −Z, where a whole circle of the
+/// square's rim ends, has no inverse.
+#[inline]
+pub fn uniform_cone_to_square(w: Vec3, height: f32) -> Vec2 {
+    disk_to_square(w.xy() / ((1.0 + w.z) * height).sqrt())
+}
+
+/// Unit square → unit sphere, uniform.
+#[inline]
+pub fn square_to_uniform_sphere(u: Vec2) -> Vec3 {
+    square_to_uniform_cone(u, 2.0)
+}
+
+/// The density of [`square_to_uniform_sphere`]: 1/(4π) [1/sr].
+#[inline]
+pub fn uniform_sphere_pdf() -> f32 {
+    0.25 * FRAC_1_PI
+}
+
+/// Unit sphere → unit square: the inverse of [`square_to_uniform_sphere`], but at −Z.
+#[inline]
+pub fn uniform_sphere_to_square(w: Vec3) -> Vec2 {
+    uniform_cone_to_square(w, 2.0)
 }
 
 /// Unit square → triangle, uniform. The answer holds the weights of the second and the third corner; the first has

@@ -15,6 +15,8 @@ pub enum Subject {
     Light(String),
     /// The sky.
     Sky,
+    /// The picture of the sky.
+    Environment(String),
 }
 
 impl std::fmt::Display for Subject {
@@ -25,6 +27,7 @@ impl std::fmt::Display for Subject {
             Self::Material(name) => write!(f, "material \"{name}\""),
             Self::Light(name) => write!(f, "light \"{name}\""),
             Self::Sky => write!(f, "the sky"),
+            Self::Environment(name) => write!(f, "environment map \"{name}\""),
         }
     }
 }
@@ -126,6 +129,59 @@ pub enum FaultKind {
         /// The range asked for [m].
         range: f32,
     },
+    /// A light that is nowhere.
+    #[error("has a position that is not a finite number; correct it")]
+    NonFiniteLight,
+    /// A radius that is negative or not finite.
+    #[error("has a radius of {radius} m; give it one of zero or more")]
+    BadRadius {
+        /// The radius asked for [m].
+        radius: f32,
+    },
+    /// A direction without length.
+    #[error("has a direction of no length; give it one")]
+    BadDirection,
+    /// A cone that is none.
+    #[error(
+        "has a cone from {inner} to {outer} rad; give it an inner angle of at least 0, and an outer one of at least \
+         that and at most π"
+    )]
+    BadCone {
+        /// The angle within which it is not dimmed [rad].
+        inner: f32,
+        /// The angle beyond which it is dark [rad].
+        outer: f32,
+    },
+    /// A disc that is no disc.
+    #[error("has an angular diameter of {diameter} rad; give it one from 0 to π")]
+    BadDiameter {
+        /// The diameter asked for [rad].
+        diameter: f32,
+    },
+    /// A picture without pixels, or with more or fewer than its size says.
+    #[error("has {count} pixels for a size of {width} × {height}; load it again")]
+    BadSize {
+        /// Width [pixels].
+        width: u32,
+        /// Height [pixels].
+        height: u32,
+        /// How many pixels there are.
+        count: usize,
+    },
+    /// A pixel that is negative or not finite.
+    #[error(
+        "has a pixel that is negative or not a finite number (the first at column {column}, row {row} from the top \
+         left); correct it"
+    )]
+    BadPixel {
+        /// Its column.
+        column: usize,
+        /// Its row.
+        row: usize,
+    },
+    /// A rotation that is none.
+    #[error("has a rotation that is not a finite quaternion of length 1; correct it")]
+    BadRotation,
     /// A light source without area.
     #[error("has no area, so it gives no light; give it a width and a height")]
     ZeroArea,

@@ -1,6 +1,8 @@
 //! Every fault of a scene, found before anything is traced.
 
-use super::{Fault, FaultKind, Instance, Light, Material, Mesh, Scene, Subject, Topology};
+mod light;
+
+use super::{Fault, FaultKind, Instance, Material, Mesh, Scene, Subject, Topology};
 use glam::{Affine3A, Vec2, Vec3};
 use std::collections::HashSet;
 
@@ -35,6 +37,9 @@ impl Scene {
         }
         if !is_radiance(self.sky_radiance) {
             blame(Subject::Sky, vec![FaultKind::BadEmission]);
+        }
+        if let Some(map) = &self.environment {
+            blame(Subject::Environment(map.name.clone()), map.faults());
         }
         faults
     }
@@ -135,29 +140,6 @@ impl Material {
     }
 }
 
-impl Light {
-    pub(crate) fn faults(&self) -> Vec<FaultKind> {
-        let Self::Rect(light) = self else { return Vec::new() };
-        let mut kinds = Vec::new();
-        if !is_radiance(light.radiance) {
-            kinds.push(FaultKind::BadEmission);
-        }
-        let is_extent = |extent: f32| extent.is_finite() && extent > 0.0;
-        if !(is_extent(light.width) && is_extent(light.height)) {
-            kinds.push(FaultKind::ZeroArea);
-        }
-        if let Some(range) = light.range
-            && (range.is_nan() || range <= 0.0)
-        {
-            kinds.push(FaultKind::BadRange { range });
-        }
-        if !is_invertible(&light.world_from_local) {
-            kinds.push(FaultKind::SingularTransform);
-        }
-        kinds
-    }
-}
-
 fn is_radiance(radiance: Vec3) -> bool {
     radiance.is_finite() && radiance.min_element() >= 0.0
 }
@@ -175,7 +157,7 @@ fn is_invertible(transform: &Affine3A) -> bool {
 mod tests {
     use super::*;
     use crate::artefact::StableId;
-    use crate::scene::{Indices, LightmapRequest, RectLight};
+    use crate::scene::{Indices, Light, LightmapRequest, RectLight};
 
     fn sound() -> Scene {
         Scene {

@@ -1,6 +1,5 @@
 //! Whether light can leave a scene, found by following it forwards from its sources.
 
-use super::path::PathStart;
 use super::sampler::{Dimensions, Sampler, Sobol};
 use super::tracer::Tracer;
 use crate::math::{Frame, combine, square_to_cosine_hemisphere};
@@ -13,23 +12,18 @@ impl Tracer {
     /// Whether none of `walks` light paths from the sources leaves the scene.
     pub(crate) fn is_closed(&self, walks: u64, seed: u64) -> bool {
         let key = combine(seed, 0x636c_6f73_6564);
-        !self.emitters.is_empty() && (0..walks).all(|walk| self.stays_inside(&Sobol::new(key, walk)))
+        !self.lights.is_empty() && !self.lights.has_distant() && (0..walks).all(|walk| self.stays_inside(&Sobol::new(key, walk)))
     }
 
     fn stays_inside(&self, sampler: &Sobol) -> bool {
-        let [u, v, u_choice, u_side] = sampler.draw(Dimensions::Start);
-        let Some(source) = self.emitters.choose(u_choice) else {
+        let [u_choice, ..] = sampler.draw(Dimensions::Start);
+        let Some((mut origin, mut direction)) = self.lights.depart(u_choice, sampler.draw(Dimensions::Light { vertex: 0 }))
+        else {
             return false;
         };
-        let position = source.point(Vec2::new(u, v));
-        let normal = if source.double_sided && u_side < 0.5 { -source.normal } else { source.normal };
-        let origin = position + normal * source.error.dot(normal.abs());
-        let mut vertex = PathStart::free(origin, normal);
         for step in 0..MAX_STEPS {
             let [u, v, u_survive, _] = sampler.draw(Dimensions::Scatter { vertex: step });
-            let frame = Frame::new(vertex.normal());
-            let direction = frame.world_from_local(square_to_cosine_hemisphere(Vec2::new(u, v)));
-            let Some(hit) = self.accel.closest(vertex.origin(), direction, f32::INFINITY) else {
+            let Some(hit) = self.accel.closest(origin, direction, f32::INFINITY) else {
                 return false;
             };
             if u_survive >= self.diffuse_albedo(hit.triangle).max_element() {
@@ -37,7 +31,9 @@ impl Tracer {
             }
             let normal: Vec3 = self.normal(hit.triangle);
             let side = if normal.dot(direction) > 0.0 { -normal } else { normal };
-            vertex = self.start_on_triangle(hit.triangle, hit.barycentric, side);
+            let vertex = self.start_on_triangle(hit.triangle, hit.barycentric, side);
+            origin = vertex.origin();
+            direction = Frame::new(vertex.normal()).world_from_local(square_to_cosine_hemisphere(Vec2::new(u, v)));
         }
         true
     }

@@ -1,10 +1,10 @@
 //! From a scene to a [`Tracer`]: faults left out, the rest in world space and in an order of its own.
 
 use super::accel::Accel;
-use super::light::{Emitter, EmitterShape, Emitters};
-use super::surface::{Placement, TriangleShape, position_error};
+use super::light::{Emitter, EmitterShape, Sources};
+use super::surface::{Placement, TriangleShape};
 use super::tracer::{NOT_EMISSIVE, Receiver, Surface, Tracer};
-use crate::scene::{Fault, Instance, Light, Material, Mesh, RectLight, Scattering, Scene, Subject};
+use crate::scene::{Fault, Instance, Light, Material, Mesh, Scattering, Scene, Subject};
 use glam::Vec3;
 use std::collections::HashSet;
 
@@ -39,9 +39,10 @@ impl Compiled {
             scene.lights.iter().zip(&sound.lights).filter(|(_, sound)| **sound).map(|(light, _)| light).collect();
         lights.sort_by(|a, b| a.id().cmp(b.id()));
         for light in lights {
-            if let Light::Rect(light) = light {
-                world.add_rect_light(light);
-            }
+            world.sources.add_light(light);
+        }
+        if let Some(map) = scene.environment.as_ref().filter(|_| sound.environment) {
+            world.sources.set_environment(map);
         }
         let sky_radiance = if sound.sky { scene.sky_radiance } else { Vec3::ZERO };
         Self { tracer: world.into_tracer(sky_radiance), faults }
@@ -62,6 +63,7 @@ struct Sound {
     lightmaps: Vec<bool>,
     lights: Vec<bool>,
     sky: bool,
+    environment: bool,
 }
 
 impl Sound {
@@ -83,7 +85,8 @@ impl Sound {
         let mut ids = HashSet::new();
         let lights = scene.lights.iter().map(|light| ids.insert(light.id()) && light.faults().is_empty()).collect();
         let sky = !faults.iter().any(|fault| fault.subject == Subject::Sky);
-        Self { instances, lightmaps, lights, sky }
+        let environment = !faults.iter().any(|fault| matches!(fault.subject, Subject::Environment(_)));
+        Self { instances, lightmaps, lights, sky, environment }
     }
 }
 
@@ -101,8 +104,7 @@ struct World {
     surface_of: Vec<u32>,
     surfaces: Vec<Surface>,
     emitter_of: Vec<u32>,
-    emitters: Vec<Emitter>,
-    free: Vec<u32>,
+    sources: Sources,
     receivers: Vec<Receiver>,
 }
 
@@ -140,39 +142,17 @@ impl World {
         let mut index = first;
         while index < self.triangles.len() {
             let mut emitter = Emitter::triangle(&self.triangles[index], surface.emitted_radiance, surface.double_sided);
-            let number = self.emitters.len() as u32;
-            self.emitter_of[index] = number;
+            let mut covered = 1;
             if let Some(next) = self.triangles.get(index + 1)
                 && let Some((corner, edges)) = rectangle_of(&self.triangles[index], next)
             {
                 emitter.shape = EmitterShape::Rectangle { corner, edges };
-                self.emitter_of[index + 1] = number;
-                index += 1;
+                covered = 2;
             }
-            self.emitters.push(emitter);
-            index += 1;
+            let number = self.sources.add_emitter(emitter);
+            self.emitter_of[index..index + covered].fill(number);
+            index += covered;
         }
-    }
-
-    fn add_rect_light(&mut self, light: &RectLight) {
-        let placement = Placement::new(&light.world_from_local);
-        let (x, y) = (0.5 * light.width, 0.5 * light.height);
-        let [corner, right, top] =
-            [Vec3::new(-x, -y, 0.0), Vec3::new(x, -y, 0.0), Vec3::new(-x, y, 0.0)].map(|p| placement.position(p));
-        let edges = [right - corner, top - corner];
-        let normal = placement.normal(Vec3::NEG_Z);
-        let error = position_error([corner, right, top, right + edges[1]]);
-        // A lamp set flush into a ceiling must lie before it, not half behind it by rounding.
-        let corner = corner + normal * error.dot(normal.abs());
-        self.free.push(self.emitters.len() as u32);
-        self.emitters.push(Emitter {
-            shape: EmitterShape::Rectangle { corner, edges },
-            normal,
-            radiance: light.radiance,
-            double_sided: false,
-            inverse_range: light.range.map_or(0.0, f32::recip),
-            error,
-        });
     }
 
     fn into_tracer(self, sky_radiance: Vec3) -> Tracer {
@@ -186,7 +166,7 @@ impl World {
             surface_of: self.surface_of,
             surfaces: self.surfaces,
             emitter_of: self.emitter_of,
-            emitters: Emitters::new(self.emitters, self.free),
+            lights: self.sources.into_lights(),
             sky_radiance,
             extent: bounds.map_or(0.0, |(low, high)| (high - low).length()),
             receivers: self.receivers,

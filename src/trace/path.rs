@@ -7,6 +7,7 @@
 //! so that it loses no light; there is no cap on bounces but one that a person asks for.
 
 use super::bsdf::{Bsdf, Lambert};
+use super::light::{End, LightContext};
 use super::mis::power_heuristic;
 use super::sampler::{Dimensions, Sampler};
 use super::surface::TriangleShape;
@@ -96,7 +97,8 @@ impl Tracer {
         loop {
             let bsdf = Bsdf::Lambert(Lambert { albedo });
             let frame = Frame::new(vertex.normal);
-            if transport.estimator != Estimator::Bsdf && !self.emitters.is_empty() {
+            let ctx = LightContext { position: vertex.position, normal: Some(vertex.normal) };
+            if !self.lights.is_empty() {
                 let u = sampler.draw(Dimensions::Light { vertex: number });
                 radiance += throughput * self.light_sample(&vertex, &frame, &bsdf, u, transport.estimator, rays);
             }
@@ -110,16 +112,15 @@ impl Tracer {
             throughput *= scattered.weight;
             *rays += 1;
             let hit = self.accel.closest(vertex.origin, wi, f32::INFINITY);
-            let weigh =
-                |emitter, distance| self.emission_weight(emitter, &vertex, wi, distance, scattered.pdf, transport);
+            let weigh = |pdf| emission_weight(transport.estimator, scattered.pdf, pdf);
             let end = hit.map_or(f32::INFINITY, |hit| hit.t);
-            for (emitter, distance) in self.emitters.passed(vertex.origin, wi, end) {
-                let emitted = self.emitters.get(emitter).radiance_towards(vertex.position, wi);
-                if emitted != Vec3::ZERO {
-                    radiance += throughput * emitted * weigh(emitter, distance);
-                }
+            for met in self.lights.passed(&ctx, vertex.origin, wi, end) {
+                radiance += throughput * met.radiance * weigh(met.pdf);
             }
             let Some(hit) = hit else {
+                for met in self.lights.distant(&ctx, wi) {
+                    radiance += throughput * met.radiance * weigh(met.pdf);
+                }
                 return radiance + throughput * self.sky_radiance;
             };
             let triangle = &self.triangles[hit.triangle as usize];
@@ -128,7 +129,7 @@ impl Tracer {
             if emitted != Vec3::ZERO {
                 let emitter = self.emitter_of[hit.triangle as usize];
                 debug_assert_ne!(emitter, NOT_EMISSIVE);
-                radiance += throughput * emitted * weigh(emitter, hit.t);
+                radiance += throughput * emitted * weigh(self.lights.pdf(emitter, &ctx, wi, hit.t));
             }
             if transport.max_bounces.is_some_and(|cap| number >= cap) {
                 return radiance;
@@ -157,7 +158,7 @@ impl Tracer {
     ) -> Vec3 {
         *rays += 1;
         let Some(hit) = self.accel.closest(origin, direction, f32::INFINITY) else {
-            return self.sky_radiance;
+            return self.sky_radiance + self.lights.sky_picture(direction);
         };
         let triangle = &self.triangles[hit.triangle as usize];
         let surface = &self.surfaces[self.surface_of[hit.triangle as usize] as usize];
@@ -180,7 +181,8 @@ impl Tracer {
         estimator: Estimator,
         rays: &mut u64,
     ) -> Vec3 {
-        let Some(sample) = self.emitters.sample(vertex.position, Vec2::new(u, v), u_choice) else {
+        let ctx = LightContext { position: vertex.position, normal: Some(vertex.normal) };
+        let Some(sample) = self.lights.sample(&ctx, Vec2::new(u, v), u_choice) else {
             return Vec3::ZERO;
         };
         let wi = frame.local_from_world(sample.wi);
@@ -188,32 +190,27 @@ impl Tracer {
         if scattering == Vec3::ZERO || vertex.geometric_normal.dot(sample.wi) <= 0.0 {
             return Vec3::ZERO;
         }
-        *rays += 1;
-        if self.accel.is_blocked(vertex.origin, sample.target) {
-            return Vec3::ZERO;
-        }
-        let weight = match estimator {
-            Estimator::Light => 1.0,
-            _ => power_heuristic(sample.pdf, bsdf.pdf(wi)),
+        let weight = match (estimator, sample.pdf) {
+            (_, None) | (Estimator::Light, _) => 1.0,
+            (Estimator::Mis, Some(pdf)) => power_heuristic(pdf, bsdf.pdf(wi)),
+            (Estimator::Bsdf, Some(_)) => return Vec3::ZERO,
         };
-        scattering * sample.radiance * (weight / sample.pdf)
+        let is_blocked = match sample.end {
+            End::At(target) => self.accel.is_blocked(vertex.origin, target),
+            End::Here => false,
+            End::Infinity => self.accel.closest(vertex.origin, sample.wi, f32::INFINITY).is_some(),
+        };
+        *rays += 1;
+        if is_blocked { Vec3::ZERO } else { scattering * sample.value * weight }
     }
+}
 
-    /// Weight of a source's light that the path met by itself.
-    fn emission_weight(
-        &self,
-        emitter: u32,
-        vertex: &PathStart,
-        wi: Vec3,
-        distance: f32,
-        pdf: f32,
-        transport: &Transport,
-    ) -> f32 {
-        match transport.estimator {
-            Estimator::Bsdf => 1.0,
-            Estimator::Light => 0.0,
-            Estimator::Mis => power_heuristic(pdf, self.emitters.pdf(emitter, vertex.position, wi, distance)),
-        }
+/// Weight of a source's light that the path met by itself with density `own`, and light sampling finds with `other`.
+fn emission_weight(estimator: Estimator, own: f32, other: f32) -> f32 {
+    match estimator {
+        Estimator::Bsdf => 1.0,
+        Estimator::Light => 0.0,
+        Estimator::Mis => power_heuristic(own, other),
     }
 }
 

@@ -1,7 +1,7 @@
 //! A scene compiled for rays.
 
 use super::accel::Accel;
-use super::light::Emitters;
+use super::light::Lights;
 use super::surface::TriangleShape;
 use glam::{DVec3, Vec3};
 
@@ -23,9 +23,9 @@ pub struct Tracer {
     /// Per triangle, index into `surfaces`.
     pub(super) surface_of: Vec<u32>,
     pub(super) surfaces: Vec<Surface>,
-    /// Per triangle, index into `emitters` or [`NOT_EMISSIVE`].
+    /// Per triangle, index into `lights` or [`NOT_EMISSIVE`].
     pub(super) emitter_of: Vec<u32>,
-    pub(super) emitters: Emitters,
+    pub(super) lights: Lights,
     pub(super) sky_radiance: Vec3,
     /// Length of the diagonal of the scene's bounds [m].
     pub(super) extent: f32,
@@ -73,7 +73,7 @@ impl Tracer {
 
     /// Whether anything gives light.
     pub(crate) fn has_light(&self) -> bool {
-        !self.emitters.is_empty() || self.sky_radiance != Vec3::ZERO
+        !self.lights.is_empty() || self.sky_radiance != Vec3::ZERO
     }
 
     /// Radiance of the sky [cd/m²].
@@ -88,7 +88,7 @@ impl Tracer {
 
     /// Glowing shapes.
     pub(crate) fn emitter_count(&self) -> usize {
-        self.emitters.len()
+        self.lights.emitter_count()
     }
 
     /// Diffuse albedo of a triangle.
@@ -111,16 +111,9 @@ impl Tracer {
         self.triangles[triangle as usize].area()
     }
 
-    /// Flux that all sources give off, per channel [lm]; `None` under a sky, whose flux has no bound.
+    /// Flux that all sources give off, per channel [lm]; `None` under a sky, whose flux has no bound, and where a
+    /// source's cannot be told.
     pub(crate) fn emitted_flux(&self) -> Option<DVec3> {
-        (self.sky_radiance == Vec3::ZERO).then(|| {
-            self.emitters
-                .iter()
-                .map(|emitter| {
-                    let sides = if emitter.double_sided { 2.0 } else { 1.0 };
-                    emitter.radiance.as_dvec3() * (sides * std::f64::consts::PI * emitter.area())
-                })
-                .sum()
-        })
+        if self.sky_radiance == Vec3::ZERO { self.lights.flux() } else { None }
     }
 }

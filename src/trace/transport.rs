@@ -1,6 +1,7 @@
 //! How light is followed: the choices that change noise and, for a bounce cap, truth.
 
-/// Which samples an estimate of light from sources is made of. All three have the same mean.
+/// Which samples an estimate of light from sources is made of. All three have the same mean. Points and single
+/// directions, which no ray can meet, are aimed at by all three.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Estimator {
     /// Light and surface samples together, weighted by multiple importance sampling (Veach and Guibas 1995).

@@ -1,7 +1,9 @@
 //! Light sampling: points on sources follow the density that is claimed for them, on the sphere of directions and on
 //! the source itself; the two ways to ask for a density agree; and planted faults are rejected.
 
-use super::{Emitter, EmitterShape, Emitters};
+use super::lights::Parts;
+use super::seen::Seen;
+use super::{Emitter, EmitterShape, End, LightContext, LightSample, Lights, MetSource, SourceIndex};
 use crate::math::testing::{ChiSquared, Domain, Random, Rejection};
 use glam::{Vec2, Vec3};
 use std::cell::RefCell;
@@ -16,7 +18,35 @@ const RECEIVERS: [Vec3; 5] = [
 ];
 
 fn source(shape: EmitterShape, double_sided: bool) -> Emitter {
-    Emitter { shape, normal: Vec3::Z, radiance: Vec3::ONE, double_sided, inverse_range: 0.0, error: Vec3::ZERO }
+    Emitter {
+        shape,
+        normal: Vec3::Z,
+        strength: Vec3::ONE,
+        mean_strength: Vec3::ONE,
+        double_sided,
+        inverse_range: 0.0,
+        cone: None,
+        error: Vec3::ZERO,
+    }
+}
+
+/// Sources all of which block nothing.
+fn lights(emitters: Vec<Emitter>) -> Lights {
+    let free = (0..emitters.len() as u32).collect();
+    Lights::new(Parts { emitters, free, ..Parts::default() })
+}
+
+fn free(position: Vec3) -> LightContext {
+    LightContext { position, normal: None }
+}
+
+fn pdf(emitter: &Emitter, receiver: Vec3, wi: Vec3, distance: f64) -> f64 {
+    emitter.solid_angle(receiver, wi, distance as f32).map_or(0.0, f64::recip)
+}
+
+fn target(end: End) -> Vec3 {
+    let End::At(target) = end else { panic!("{end:?} is nowhere") };
+    target
 }
 
 fn rectangle() -> Emitter {
@@ -36,7 +66,7 @@ fn met(emitter: &Emitter, receiver: Vec3, wi: Vec3) -> Option<f64> {
     let [s, t_on] = on_source(emitter, (receiver + t * wi).as_vec3());
     let is_inside = match emitter.shape {
         EmitterShape::Rectangle { .. } => s <= 1.0 && t_on <= 1.0,
-        EmitterShape::Triangle { .. } => s + t_on <= 1.0,
+        _ => s + t_on <= 1.0,
     };
     (t.is_finite() && t > 0.0 && s >= 0.0 && t_on >= 0.0 && is_inside).then_some(t)
 }
@@ -45,6 +75,7 @@ fn axes(emitter: &Emitter) -> (Vec3, [Vec3; 2]) {
     match emitter.shape {
         EmitterShape::Rectangle { corner, edges } => (corner, edges),
         EmitterShape::Triangle { vertices: [a, b, c] } => (a, [b - a, c - a]),
+        EmitterShape::Sphere { .. } | EmitterShape::Point { .. } => unreachable!("{emitter:?} is not flat"),
     }
 }
 
@@ -66,7 +97,7 @@ fn on_sphere(emitter: &Emitter, receiver: Vec3, fault: impl Fn(Vec3) -> f64) -> 
     let centre = (emitter.centre() - receiver).normalize();
     let density = |wi: Vec3| {
         let inside = (wi + 1e-6 * (centre - wi)).normalize();
-        met(emitter, receiver, inside).map_or(0.0, |t| f64::from(emitter.pdf(receiver, wi, t as f32)) * fault(wi))
+        met(emitter, receiver, inside).map_or(0.0, |t| pdf(emitter, receiver, wi, t) * fault(wi))
     };
     test.run(sample, density)
 }
@@ -77,7 +108,7 @@ fn on_plane(emitter: &Emitter, receiver: Vec3, fault: impl Fn(Vec3) -> f64) -> R
     let (corner, [u, v]) = axes(emitter);
     let is_triangle = matches!(emitter.shape, EmitterShape::Triangle { .. });
     let sample = |s| {
-        let [s, t] = on_source(emitter, emitter.sample(receiver, s).expect("both sides shine").target);
+        let [s, t] = on_source(emitter, target(emitter.sample(receiver, s).expect("both sides shine").end));
         Vec3::new(s as f32, t as f32, 0.0) * (1.0 - 1e-6)
     };
     let density = |p: Vec3| {
@@ -87,7 +118,7 @@ fn on_plane(emitter: &Emitter, receiver: Vec3, fault: impl Fn(Vec3) -> f64) -> R
         let offset = corner + p.x * u + p.y * v - receiver;
         let wi = offset.normalize();
         let area = f64::from(u.cross(v).length());
-        let per_area = f64::from(emitter.pdf(receiver, wi, offset.length())) * f64::from(emitter.normal.dot(wi).abs())
+        let per_area = pdf(emitter, receiver, wi, f64::from(offset.length())) * f64::from(emitter.normal.dot(wi).abs())
             / f64::from(offset.length_squared());
         per_area * area * fault(wi)
     };
@@ -114,15 +145,16 @@ fn samples_follow_their_density_on_the_source() {
             assert!(p.is_ok(), "{name} from {receiver}: {p:?}");
         }
         // So far away that it is sampled by area.
-        assert!(matches!(super::shape::Seen::new(&emitter.shape, far), super::shape::Seen::ByArea));
+        assert!(matches!(Seen::new(&emitter.shape, far), Seen::ByArea));
         let mut random = Random::new(3);
         let mut hits = [0_u32; 4];
         for _ in 0..40_000 {
             let sample = emitter.sample(far, random.square()).expect("both sides shine");
             let expected =
                 f64::from((far - emitter.centre()).length_squared()) / (emitter.area() * f64::from(sample.wi.z.abs()));
-            assert!((f64::from(sample.pdf) / expected - 1.0).abs() < 1e-5, "{sample:?}");
-            let [s, t] = on_source(&emitter, emitter.point(random.square()));
+            let solid_angle = sample.solid_angle.expect("it has a size");
+            assert!((expected * solid_angle - 1.0).abs() < 1e-5, "{solid_angle}");
+            let [s, t] = on_source(&emitter, emitter.depart([random.unit(), random.unit(), 0.5, 0.5]).0);
             hits[usize::from(s > 0.5) + 2 * usize::from(t > 0.5)] += 1;
         }
         // Of a triangle, one half of each side is at the corner: three quarters of the area, and none beyond both.
@@ -162,53 +194,59 @@ fn mean_cosine(emitter: &Emitter, receiver: Vec3) -> f64 {
 /// The density of a sample is the one that is found for its direction, by shape and among several.
 #[test]
 fn both_ways_to_ask_for_a_density_agree() {
-    let emitters = several();
+    let lights = several();
     let mut random = Random::new(5);
     let mut count = 0;
     for receiver in RECEIVERS.into_iter().chain([Vec3::new(4e7, 3e7, 6e7)]) {
         for _ in 0..2000 {
-            for emitter in emitters.iter() {
-                let Some(sample) = emitter.sample(receiver, random.square()) else {
-                    continue;
-                };
-                let found = emitter.pdf(receiver, sample.wi, sample.target.distance(receiver));
-                // Near the plane of a source the cosine is what f32 leaves of it.
-                assert!((found / sample.pdf - 1.0).abs() < 1e-4, "{receiver}: {sample:?} but {found}");
-                assert!((sample.wi.length() - 1.0).abs() < 1e-6);
-                count += 1;
-            }
+            let ctx = LightContext { position: receiver, normal: Some(random.direction()) };
+            let Some(sample) = lights.sample(&ctx, random.square(), random.unit()) else {
+                continue;
+            };
+            let LightSample { wi, source: SourceIndex::Emitter(source), pdf: Some(pdf), .. } = sample else {
+                panic!("{sample:?} is not on an emitter with a size");
+            };
+            let found = lights.pdf(source, &ctx, wi, sample.distance);
+            // Near the plane of a source the cosine is what f32 leaves of it.
+            assert!((found / pdf - 1.0).abs() < 1e-4, "{receiver}: {sample:?} but {found}");
+            assert!((wi.length() - 1.0).abs() < 1e-6);
+            let radiance = lights.get(source).radiance_towards(receiver, wi);
+            assert!((sample.value * pdf / radiance - 1.0).abs().max_element() < 1e-5, "{sample:?}");
+            count += 1;
         }
     }
-    assert!(count > 30_000, "{count}");
+    assert!(count > 8_000, "{count}");
 }
 
 /// A lamp, a small bright triangle, a lamp that shines away from most receivers, and a black one.
-fn several() -> Emitters {
+fn several() -> Lights {
     let lamp = source(EmitterShape::Rectangle { corner: Vec3::new(-2.0, 1.0, 3.0), edges: [Vec3::X, Vec3::Y] }, true);
     let small = Vec3::new(1.0, -1.0, 2.5);
     let small = EmitterShape::Triangle { vertices: [small, small + 0.7 * Vec3::X, small + 0.6 * Vec3::Y] };
-    let bright = Emitter { radiance: Vec3::new(9.0, 5.0, 2.0), ..source(small, true) };
-    let black = Emitter { radiance: Vec3::ZERO, ..rectangle() };
-    Emitters::new(vec![rectangle(), lamp, bright, black, triangle()], vec![0])
+    let strength = Vec3::new(9.0, 5.0, 2.0);
+    let bright = Emitter { strength, mean_strength: strength, ..source(small, true) };
+    let black = Emitter { strength: Vec3::ZERO, mean_strength: Vec3::ZERO, ..rectangle() };
+    lights(vec![rectangle(), lamp, bright, black, triangle()])
 }
 
 /// χ² of the choice of source and the point on it together; `weight` is what the density is multiplied by, per
 /// source.
 fn among_several(receiver: Vec3, weight: impl Fn(u32) -> f64) -> Result<f64, Rejection> {
-    let emitters = several();
+    let lights = several();
+    let ctx = free(receiver);
     let choices = RefCell::new(Random::new(9));
     // The rim of a source cuts its cells; their integrals are good to about a thousandth, and so many samples see less.
     let test = ChiSquared { cells: [101, 51], samples: 20_000, ..ChiSquared::over(Domain::Sphere) };
-    let sample = |u| emitters.sample(receiver, u, choices.borrow_mut().unit()).expect("all shine").wi;
+    let sample = |u| lights.sample(&ctx, u, choices.borrow_mut().unit()).expect("all shine").wi;
     let density = |wi: Vec3| {
         let of = |index: u32| {
-            let emitter = emitters.get(index);
+            let emitter = lights.get(index);
             let centre = (emitter.centre() - receiver).normalize();
             let inside = (wi + 1e-6 * (centre - wi)).normalize();
             let distance = met(emitter, receiver, inside)? as f32;
-            Some(f64::from(emitters.pdf(index, receiver, wi, distance)) * weight(index))
+            Some(f64::from(lights.pdf(index, &ctx, wi, distance)) * weight(index))
         };
-        (0..emitters.len() as u32).filter_map(of).sum()
+        (0..lights.emitter_count() as u32).filter_map(of).sum()
     };
     test.run(sample, density)
 }
@@ -219,7 +257,7 @@ fn the_choice_among_sources_follows_its_density() {
         let p = among_several(receiver, |_| 1.0);
         assert!(p.is_ok(), "{receiver}: {p:?}");
         // Planted: two sources take a little from each other, so that the total stays.
-        let probability = |index| several().choice_probability(index);
+        let probability = |index| several().chance(index, &free(receiver));
         let shifted = among_several(receiver, |index| match index {
             1 => 1.0 + 0.04 / probability(1),
             2 => 1.0 - 0.04 / probability(2),
@@ -229,14 +267,15 @@ fn the_choice_among_sources_follows_its_density() {
         let uniform = among_several(receiver, |index| 0.25 / probability(index).max(1e-9));
         assert!(matches!(uniform, Err(Rejection::Counts(_))), "{uniform:?}");
     }
-    assert_eq!(several().choice_probability(3), 0.0);
+    assert_eq!(several().chance(3, &free(RECEIVERS[0])), 0.0);
 }
 
 #[test]
 fn nothing_to_aim_at() {
-    assert!(Emitters::new(Vec::new(), Vec::new()).is_empty());
-    let black = Emitters::new(vec![Emitter { radiance: Vec3::ZERO, ..rectangle() }], Vec::new());
-    assert!(black.is_empty() && black.sample(RECEIVERS[0], Vec2::splat(0.5), 0.5).is_none());
+    assert!(Lights::default().is_empty());
+    let black = Emitter { strength: Vec3::ZERO, mean_strength: Vec3::ZERO, ..rectangle() };
+    let black = lights(vec![black]);
+    assert!(black.is_empty() && black.sample(&free(RECEIVERS[0]), Vec2::splat(0.5), 0.5).is_none());
 }
 
 #[test]
@@ -279,7 +318,10 @@ fn rays_meet_free_sources_where_they_are() {
         hits += u32::from(found.is_some());
     }
     assert!((count / 50..count / 2).contains(&hits), "{hits}");
-    let passed: Vec<(u32, f32)> = several().passed(Vec3::new(0.5, 0.25, 2.0), Vec3::NEG_Z, 9.0).collect();
-    assert_eq!(passed, [(0, 2.0)]);
-    assert_eq!(several().passed(Vec3::new(0.5, 0.25, 2.0), Vec3::NEG_Z, 1.0).count(), 0);
+    let passed = |end| -> Vec<MetSource> {
+        let ctx = free(Vec3::new(0.5, 0.25, 2.0));
+        several().passed(&ctx, ctx.position, Vec3::NEG_Z, end).collect()
+    };
+    assert_eq!((passed(9.0).len(), passed(1.0).len()), (1, 0));
+    assert_eq!(passed(9.0)[0].radiance, Vec3::ONE);
 }

@@ -5,6 +5,7 @@ use super::{MAX_SURVIVAL, PathStart, survival_probability};
 use crate::math::testing::{Random, mean_and_error, mean_within};
 use crate::math::{Frame, combine, square_to_cosine_hemisphere, square_to_triangle};
 use crate::scene::Material;
+use crate::trace::light::{End, LightContext};
 use crate::trace::mis::power_heuristic;
 use crate::trace::sampler::{Dimensions, Sampler};
 use crate::trace::testing::Shape;
@@ -81,12 +82,14 @@ fn second_opinion(tracer: &Tracer, start: &PathStart, sampler: &Sobol, fault: Fa
         let frame = Frame::new(vertex.normal);
         let weigh = |own: f32, other: f32| if fault == Fault::NoWeights { 1.0 } else { power_heuristic(own, other) };
         let [u, v, choice, _] = sampler.draw(Dimensions::Light { vertex: number });
-        if let Some(sample) = tracer.emitters.sample(vertex.position, Vec2::new(u, v), choice) {
-            let cosine = vertex.normal.dot(sample.wi);
-            if cosine > 0.0 && tracer.is_visible(vertex.origin, sample.target) {
-                let pdf = if fault == Fault::LightPdf { 1.05 * sample.pdf } else { sample.pdf };
+        let ctx = LightContext { position: vertex.position, normal: Some(vertex.normal) };
+        if let Some(sample) = tracer.lights.sample(&ctx, Vec2::new(u, v), choice) {
+            let (cosine, pdf) = (vertex.normal.dot(sample.wi), sample.pdf.expect("the walls have a size"));
+            let End::At(target) = sample.end else { unreachable!("the walls are somewhere") };
+            if cosine > 0.0 && tracer.is_visible(vertex.origin, target) {
+                let value = if fault == Fault::LightPdf { sample.value / 1.05 } else { sample.value };
                 let scattered = albedo * FRAC_1_PI * if fault == Fault::MissingCosine { 1.0 } else { cosine };
-                radiance += throughput * scattered * sample.radiance * weigh(sample.pdf, cosine * FRAC_1_PI) / pdf;
+                radiance += throughput * scattered * value * weigh(pdf, cosine * FRAC_1_PI);
             }
         }
         let [u, v, u_survive, _] = sampler.draw(Dimensions::Scatter { vertex: number });
@@ -98,8 +101,8 @@ fn second_opinion(tracer: &Tracer, start: &PathStart, sampler: &Sobol, fault: Fa
         };
         if tracer.normal(hit.triangle).dot(wi) < 0.0 {
             let emitter = tracer.emitter_of[hit.triangle as usize];
-            let pdf = tracer.emitters.pdf(emitter, vertex.position, wi, hit.t);
-            radiance += throughput * tracer.emitters.get(emitter).radiance * weigh(local.z * FRAC_1_PI, pdf);
+            let pdf = tracer.lights.pdf(emitter, &ctx, wi, hit.t);
+            radiance += throughput * tracer.lights.get(emitter).strength * weigh(local.z * FRAC_1_PI, pdf);
         }
         albedo = tracer.diffuse_albedo(hit.triangle);
         let survival = match fault {

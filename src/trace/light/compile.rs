@@ -1,0 +1,112 @@
+//! From the lights of a scene to sources. Knows their units and frames; which lights are sound is known before.
+
+use super::distant::DistantDisc;
+use super::emitter::{Cone, Emitter, EmitterShape};
+use super::environment::Environment;
+use super::lights::{Lights, Parts};
+use crate::scene::{EnvironmentMap, Light, PointLight, RectLight, SpotLight};
+use crate::trace::surface::{Placement, position_error};
+use glam::Vec3;
+use std::f32::consts::PI;
+
+/// Radius below which a sphere is a point [m]: its rim is finer than any direction.
+const SMALLEST_RADIUS: f32 = 1e-9;
+
+/// Sources as they come together. Their order is that in which they are added, and must not depend on how the scene is
+/// stored.
+#[derive(Debug, Default)]
+pub(in crate::trace) struct Sources(Parts);
+
+impl Sources {
+    /// Adds a glowing surface, which rays meet as such; the answer is its number.
+    pub(in crate::trace) fn add_emitter(&mut self, emitter: Emitter) -> u32 {
+        self.0.emitters.push(emitter);
+        self.0.emitters.len() as u32 - 1
+    }
+
+    /// Adds a light that is no surface. One that gives no light is left out.
+    pub(in crate::trace) fn add_light(&mut self, light: &Light) {
+        match light {
+            Light::Rect(light) => self.add_free(rectangle(light)),
+            Light::Point(light) => self.add_free(bulb(light, None)),
+            Light::Spot(light) => self.add_free(bulb(&light.bulb, Some(cone(light)))),
+            Light::Directional(light) => {
+                if light.illuminance != Vec3::ZERO {
+                    self.0.distant.push(DistantDisc::new(light));
+                }
+            }
+        }
+    }
+
+    /// Adds the picture of the sky.
+    pub(in crate::trace) fn set_environment(&mut self, map: &EnvironmentMap) {
+        self.0.environment = Environment::new(map);
+    }
+
+    /// Ready to be aimed at.
+    pub(in crate::trace) fn into_lights(self) -> Lights {
+        Lights::new(self.0)
+    }
+
+    fn add_free(&mut self, emitter: Emitter) {
+        if emitter.strength == Vec3::ZERO {
+            return;
+        }
+        let is_point = matches!(emitter.shape, EmitterShape::Point { .. });
+        let number = self.add_emitter(emitter);
+        if !is_point {
+            self.0.free.push(number);
+        }
+    }
+}
+
+fn rectangle(light: &RectLight) -> Emitter {
+    let placement = Placement::new(&light.world_from_local);
+    let (x, y) = (0.5 * light.width, 0.5 * light.height);
+    let [corner, right, top] =
+        [Vec3::new(-x, -y, 0.0), Vec3::new(x, -y, 0.0), Vec3::new(-x, y, 0.0)].map(|p| placement.position(p));
+    let edges = [right - corner, top - corner];
+    let normal = placement.normal(Vec3::NEG_Z);
+    let error = position_error([corner, right, top, right + edges[1]]);
+    // A lamp set flush into a ceiling must lie before it, not half behind it by rounding.
+    let corner = corner + normal * error.dot(normal.abs());
+    Emitter {
+        shape: EmitterShape::Rectangle { corner, edges },
+        normal,
+        strength: light.radiance,
+        mean_strength: light.radiance,
+        double_sided: false,
+        inverse_range: inverse_range(light.range),
+        cone: None,
+        error,
+    }
+}
+
+fn bulb(light: &PointLight, cone: Option<Cone>) -> Emitter {
+    let PointLight { position: centre, radius, .. } = *light;
+    // So small that its radiance is no number: the same light comes from a point.
+    let is_point = radius < SMALLEST_RADIUS || !(light.intensity / (PI * radius * radius)).is_finite();
+    Emitter {
+        shape: if is_point { EmitterShape::Point { centre } } else { EmitterShape::Sphere { centre, radius } },
+        normal: Vec3::Y,
+        strength: light.intensity,
+        mean_strength: light.intensity,
+        double_sided: false,
+        inverse_range: inverse_range(light.range),
+        cone,
+        error: position_error([centre.abs() + Vec3::splat(radius)]),
+    }
+}
+
+fn cone(light: &SpotLight) -> Cone {
+    Cone {
+        direction: light.direction.normalize_or(Vec3::NEG_Y),
+        inner_angle: light.inner_angle,
+        outer_angle: light.outer_angle,
+    }
+}
+
+/// 1/range [1/m], short of what no longer can be multiplied.
+fn inverse_range(range: Option<f32>) -> f32 {
+    range.map_or(0.0, |range| range.recip().min(1e18))
+}
