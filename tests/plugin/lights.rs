@@ -1,10 +1,11 @@
 //! Lights as Bevy has them and as the scene gets them.
 
-use super::{app, data, lit_floor};
+use super::{app, data, lit_floor, run_until_baked, small};
 use bevy::light::{DirectionalLightTexture, PointLightTexture, SpotLightTexture, SunDisk};
 use bevy::prelude::*;
 use bevy_kiln::plugin::windowless::open_scene;
 use bevy_kiln::plugin::{Extraction, RangeWindow, SceneSettings, extract_scene};
+use bevy_kiln::prelude::ClearLightmaps;
 use bevy_kiln::scene::{DirectionalLight as Sun, Light, PointLight as Bulb, SpotLight as Spot};
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -165,4 +166,36 @@ fn what_the_gltf_loader_adds_is_taken_away_again() {
         Light::Directional(_) => None,
     };
     assert!(scene.lights.len() == 4 && scene.lights.iter().all(|light| range(light).is_none()));
+}
+
+/// Every kind of light is kept off lightmapped meshes once it is in the lightmaps, and given back by clearing.
+#[test]
+fn baked_lights_are_muted_and_given_back() {
+    let mut app = lit_floor();
+    let world = app.world_mut();
+    let lights = [
+        world.spawn((Name::new("bulb"), PointLight::default(), Transform::from_xyz(0.0, 1.0, 0.0))).id(),
+        world.spawn((Name::new("spot"), SpotLight::default(), Transform::from_xyz(0.0, 1.0, 0.0))).id(),
+        world.spawn((Name::new("sun"), DirectionalLight::default())).id(),
+        // One that its owner keeps off lightmaps anyhow.
+        world.spawn((Name::new("kept off"), PointLight { affects_lightmapped_mesh_diffuse: false, ..default() })).id(),
+    ];
+    let flags = |world: &World| {
+        lights.map(|light| {
+            let light = world.entity(light);
+            let point = light.get::<PointLight>().map(|light| light.affects_lightmapped_mesh_diffuse);
+            let spot = light.get::<SpotLight>().map(|light| light.affects_lightmapped_mesh_diffuse);
+            let sun = light.get::<DirectionalLight>().map(|light| light.affects_lightmapped_mesh_diffuse);
+            point.or(spot).or(sun)
+        })
+    };
+    let before = flags(world);
+    assert_eq!(before, [Some(true), Some(true), Some(true), Some(false)]);
+    app.world_mut().trigger(small());
+    let baked = run_until_baked(&mut app, 1);
+    assert_eq!(baked.lightmap.baked_lights.len(), 5);
+    assert_eq!(flags(app.world()), [Some(false); 4]);
+    app.world_mut().trigger(ClearLightmaps);
+    app.update();
+    assert_eq!(flags(app.world()), before);
 }
