@@ -139,7 +139,7 @@ fn ambient_light_and_what_glows_are_baked_by_their_closed_forms() {
     assert!(compare(&brighter, &truth).verdict().is_err());
 }
 
-const GLOWING: DVec3 = DVec3::new(0.0, 1.0, -0.9);
+const GLOWING: DVec3 = DVec3::new(0.0, 1.2, -0.6);
 const GLOWING_HALF: f64 = 0.3;
 const GLOW: Vec3 = Vec3::new(20.0, 15.0, 10.0);
 

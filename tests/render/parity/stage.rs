@@ -8,8 +8,8 @@ use bevy::prelude::*;
 use glam::{DVec2, DVec3};
 
 /// Rows of 8 bytes per pixel are whole multiples of 256 bytes.
-pub const WIDTH: usize = 96;
-pub const HEIGHT: usize = 64;
+pub const WIDTH: usize = 128;
+pub const HEIGHT: usize = 80;
 
 const EYE: DVec3 = DVec3::new(0.2, 4.5, 2.2);
 const TARGET: DVec3 = DVec3::new(0.0, -0.2, 0.0);

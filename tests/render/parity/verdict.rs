@@ -10,7 +10,7 @@ const WORST: f64 = 0.03;
 const LIT: f64 = 0.05;
 
 /// As many must be lit for a verdict.
-const LEAST_LIT: usize = 1000;
+const LEAST_LIT: usize = 700;
 
 /// How far two pictures are apart.
 #[derive(Debug)]
@@ -63,7 +63,7 @@ fn planted_faults_are_found() {
     assert!(verdict(&|_, value| value * DVec3::new(1.0, 1.0, 0.96), &truth).is_err(), "a tint");
     assert!(verdict(&|pixel, value| value * if pixel == 7 { 1.04 } else { 1.0 }, &truth).is_err(), "one pixel");
     assert!(verdict(&|pixel, value| if pixel == 7 { DVec3::NAN } else { value }, &truth).is_err(), "no number");
-    assert!(verdict(&|_, value| value, &truth[..900]).is_err(), "too few");
+    assert!(verdict(&|_, value| value, &truth[..600]).is_err(), "too few");
     let dark: Vec<DVec3> = truth.iter().enumerate().map(|(i, &v)| if i < 10 { v * 100.0 } else { v }).collect();
     assert!(verdict(&|_, value| value, &dark).is_err(), "too few are lit");
 }
