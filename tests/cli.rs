@@ -244,13 +244,46 @@ fn a_scene_without_light_is_refused() {
     assert!(!folder.path().join("out").exists());
 }
 
+/// A black picture of the sky but for one pixel, in the format of Greg Ward's Radiance.
+fn sky(folder: &TempDir, mantissas: [u8; 4]) -> PathBuf {
+    let file = folder.path().join("sky.hdr");
+    let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n".to_vec();
+    for pixel in 0..8 {
+        // The upper half's second quarter from the left, which is towards -Z.
+        bytes.extend(if pixel == 1 { mantissas } else { [0; 4] });
+    }
+    std::fs::write(&file, bytes).unwrap();
+    file
+}
+
 #[test]
-fn lights_that_are_not_baked_yet_are_named() {
-    let output = run(&["plan", data("punctual.glb").to_str().unwrap(), "--sky", "0.25,0.25,0.25", "--json"]);
-    let warnings = warnings(&output);
-    for kind in ["directional light", "point light"] {
-        let named = |warning: &&String| warning.starts_with(kind) && warning.contains("is not baked yet");
-        assert_eq!(warnings.iter().filter(named).count(), 1, "{kind}: {warnings:?}");
+fn a_sky_from_a_file_is_taken_by_every_verb_and_a_bad_one_is_a_sentence() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let scene = data("cornell.glb");
+    let scene = scene.to_str().unwrap();
+    let good = sky(&folder, [128, 64, 32, 129]);
+    let output = run(&["plan", scene, "--environment", good.to_str().unwrap(), "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let broken = folder.path().join("broken.exr");
+    std::fs::write(&broken, b"no picture").unwrap();
+    let points = folder.path().join("points.csv");
+    std::fs::write(&points, "x,y,z,nx,ny,nz\n0,0,0,0,1,0\n").unwrap();
+    let (points, out) = (points.to_str().unwrap(), folder.path().join("out.png"));
+    for (file, sentence) in [
+        (Path::new("no/such.hdr"), "there is no file no/such.hdr"),
+        (&data("README.md"), "README.md is no picture of a sky that can be read"),
+        (&broken, "broken.exr cannot be loaded"),
+    ] {
+        let file = file.to_str().unwrap();
+        for verb in [
+            &["plan", scene][..],
+            &["bake", scene, "-o", "nowhere"],
+            &["irradiance", scene, "--points", points],
+            &["render", scene, "-o", out.to_str().unwrap()],
+        ] {
+            let arguments: Vec<&str> = verb.iter().copied().chain(["--environment", file]).collect();
+            assert_fails(&run(&arguments), 1, sentence);
+        }
     }
 }
 
@@ -270,7 +303,6 @@ fn wrong_arguments_and_what_is_not_there_yet() {
         (&["bake", scene, "-o", "x", "--no-denoise"], "`--no-denoise` is not there yet"),
         (&["bake", scene, "-o", "x", "--resume"], "`--resume` is not there yet"),
         (&["bake", scene, "-o", "x", "--shard", "1/2"], "`--shard` is not there yet"),
-        (&["plan", scene, "--environment", "a.hdr"], "`--environment` is not there yet"),
         (&["render", scene, "-o", "a.png", "--error", "1%"], "`--error` is not there yet"),
         (&["render", scene, "-o", "a.gif"], "a.gif is no picture"),
         (&["merge", "a", "--b"], "`kiln merge` is not there yet"),

@@ -49,7 +49,7 @@ pub use display::{AppliedLightmaps, BakedFolder, BakedFolderError, BakedLightmap
 pub use baking::{
     AmbientMode, BakeFailed, BakeFinished, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps, EmissiveUnit,
     Extraction, ExtractionWarning, LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver, RangeWindow,
-    SceneSettings, Unsimulated, extract_scene,
+    SceneSettings, Unreadable, Unsimulated, extract_scene,
 };
 
 use bevy::prelude::*;

@@ -35,6 +35,12 @@ pub enum OpenError {
         /// The path asked for.
         path: PathBuf,
     },
+    /// A picture of the sky of a kind that is not read.
+    #[error("{} is no picture of a sky that can be read; give an .hdr or an .exr file", path.display())]
+    UnknownPicture {
+        /// The path asked for.
+        path: PathBuf,
+    },
     /// It cannot be read.
     #[error("{} cannot be loaded ({reason}); it may be damaged or cut short, export it again", path.display())]
     Broken {
@@ -132,6 +138,21 @@ pub fn open_scene(path: &Path) -> Result<App, OpenError> {
         app.update();
     }
     Ok(app)
+}
+
+/// Loads an equirectangular picture of the sky, for [`SceneSettings::environment`](super::SceneSettings).
+pub fn load_environment(app: &mut App, path: &Path) -> Result<Handle<Image>, OpenError> {
+    let name = path.file_name().map(|name| name.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    if !(name.ends_with(".hdr") || name.ends_with(".exr")) {
+        return Err(OpenError::UnknownPicture { path: path.to_owned() });
+    }
+    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    if !absolute.is_file() {
+        return Err(OpenError::Missing { path: path.to_owned() });
+    }
+    let handle = app.world().resource::<AssetServer>().load::<Image>(bevy::asset::AssetPath::from(absolute));
+    wait(app, handle.id().untyped(), path)?;
+    Ok(handle)
 }
 
 enum Kind {

@@ -7,7 +7,9 @@ mod compare;
 mod example;
 mod live;
 mod mask;
+mod parity;
 mod picture;
+mod renderer;
 
 /// Ends a test that this machine cannot run.
 fn skip(reason: &str) {

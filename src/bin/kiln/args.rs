@@ -51,6 +51,9 @@ pub(crate) struct SceneArgs {
     /// A sky that is the same in every direction (radiance, cd/m², linear)
     #[arg(long, value_name = "R,G,B", value_parser = parse::sky, allow_hyphen_values = true)]
     pub(crate) sky: Option<Vec3>,
+    /// A picture of the sky: equirectangular, radiance in cd/m², +Y up, +X in the middle
+    #[arg(long, value_name = "FILE.hdr|.exr")]
+    pub(crate) environment: Option<PathBuf>,
     /// Let lights shine beyond their range
     #[arg(long)]
     pub(crate) no_range: bool,
@@ -75,8 +78,6 @@ pub(crate) struct SceneArgs {
     /// Threads that trace [default: all cores]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
-    #[arg(long, hide = true)]
-    pub(crate) environment: Option<String>,
 }
 
 /// A cap on bounces; its own type, as an `Option` would mean an absent argument.

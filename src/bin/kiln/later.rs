@@ -12,20 +12,15 @@ pub(crate) fn refuse(verb: &Verb) -> Result<(), Failure> {
             (args.no_denoise, "--no-denoise", "nothing is denoised, so leave it out"),
             (args.resume, "--resume", "bake from the start"),
             (args.shard.is_some(), "--shard", "bake the whole scene"),
-            (args.scene.environment.is_some(), "--environment", "give a uniform sky with --sky R,G,B"),
         ],
-        Verb::Plan(args) => {
-            vec![(args.scene.environment.is_some(), "--environment", "give a uniform sky with --sky R,G,B")]
-        }
+        Verb::Plan(_) => Vec::new(),
         Verb::Irradiance(args) => vec![
             (args.error.is_some(), "--error", "ask for paths with --spp N"),
             (args.time.is_some(), "--time", "ask for paths with --spp N"),
-            (args.scene.environment.is_some(), "--environment", "give a uniform sky with --sky R,G,B"),
         ],
         Verb::Render(args) => vec![
             (args.error.is_some(), "--error", "ask for paths with --spp N"),
             (args.time.is_some(), "--time", "ask for paths with --spp N"),
-            (args.scene.environment.is_some(), "--environment", "give a uniform sky with --sky R,G,B"),
         ],
         Verb::Merge(_) => vec![(true, "kiln merge", "bake the whole scene with kiln bake")],
         Verb::Study(_) => vec![(true, "kiln study", "bake with kiln bake and read its report")],

@@ -3,7 +3,7 @@
 use crate::args::{EstimatorArg, LayoutArg, LayoutArgs, SceneArgs};
 use crate::failure::Failure;
 use bevy_kiln::bake::{BakeSettings, CancelToken, Layout};
-use bevy_kiln::plugin::windowless::open_scene;
+use bevy_kiln::plugin::windowless::{load_environment, open_scene};
 use bevy_kiln::plugin::{Extraction, RangeWindow, SceneSettings, extract_scene};
 use bevy_kiln::trace::{Estimator, ForcedEffects, Transport};
 use glam::Vec3;
@@ -11,6 +11,8 @@ use glam::Vec3;
 /// Loads and reads the scene.
 pub(crate) fn open(args: &SceneArgs, cancel: &CancelToken) -> Result<Extraction, Failure> {
     let mut app = open_scene(&args.scene).map_err(Failure::failed)?;
+    let environment = args.environment.as_deref().map(|file| load_environment(&mut app, file));
+    let environment = environment.transpose().map_err(Failure::failed)?;
     if cancel.is_cancelled() {
         return Err(Failure::Stopped);
     }
@@ -18,6 +20,7 @@ pub(crate) fn open(args: &SceneArgs, cancel: &CancelToken) -> Result<Extraction,
         emissive: args.emissive,
         range: if args.no_range { RangeWindow::Ignore } else { RangeWindow::AsDisplayed },
         sky_radiance: args.sky.unwrap_or(Vec3::ZERO),
+        environment,
         ..SceneSettings::default()
     };
     Ok(extract_scene(app.world_mut(), &settings))

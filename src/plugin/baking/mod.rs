@@ -10,7 +10,7 @@ mod write_back;
 pub use events::{
     BakeFailed, BakeFinished, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps, LightmapFormat, LightmapLayout,
 };
-pub use extract::{Extraction, ExtractionWarning, Unsimulated, extract_scene};
+pub use extract::{Extraction, ExtractionWarning, Unreadable, Unsimulated, extract_scene};
 pub use markers::{LightBlocker, LightmapReceiver};
 pub use settings::{AmbientMode, EmissiveUnit, RangeWindow, SceneSettings};
 

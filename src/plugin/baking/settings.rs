@@ -61,7 +61,7 @@ pub enum RangeWindow {
 }
 
 /// How a Bevy scene is read.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[derive(Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub struct SceneSettings {
     /// In which unit emissive materials are taken.
@@ -72,6 +72,10 @@ pub struct SceneSettings {
     pub range: RangeWindow,
     /// Radiance of a sky that is the same in every direction, linear Rec. 709 [cd/m²]. Black is no sky.
     pub sky_radiance: Vec3,
+    /// A picture of the sky, on top of `sky_radiance` and instead of any that a camera has: equirectangular, its texels
+    /// radiance [cd/m²], as Bevy loads it from an `.hdr` or `.exr` file; or a cube. Up is +Y, its middle +X, a quarter
+    /// from its left edge -Z.
+    pub environment: Option<Handle<Image>>,
 }
 
 #[cfg(test)]

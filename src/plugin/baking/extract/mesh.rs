@@ -1,6 +1,6 @@
 //! `Mesh3d` into meshes and instances.
 
-use super::{Extraction, ExtractionWarning, Thing, material};
+use super::{Extraction, ExtractionWarning, Thing, attribute, material};
 use crate::plugin::baking::SceneSettings;
 use crate::scene::{self, Instance, LightmapRequest, Topology};
 use bevy::mesh::morph::MeshMorphWeights;
@@ -85,39 +85,49 @@ fn read(
         Some(Indices::U32(indices)) => scene::Indices::U32(indices.clone()),
     };
     let attribute = |attribute: MeshVertexAttribute| mesh.try_attribute_option(attribute).map_err(gone);
-    let positions = match attribute(Mesh::ATTRIBUTE_POSITION)? {
-        None => return Err(ExtractionWarning::NoPositions { name }),
-        Some(VertexAttributeValues::Float32x3(positions)) => positions.iter().map(|&p| Vec3::from(p)).collect(),
-        Some(other) => return Err(format_warning(&name, "positions", other)),
+    let Some(positions) = attribute(Mesh::ATTRIBUTE_POSITION)? else {
+        return Err(ExtractionWarning::NoPositions { name });
     };
-    let normals = match attribute(Mesh::ATTRIBUTE_NORMAL)? {
-        None => None,
-        Some(VertexAttributeValues::Float32x3(normals)) => Some(normals.iter().map(|&n| Vec3::from(n)).collect()),
-        Some(other) => {
-            warnings.push(format_warning(&name, "normals", other));
-            None
+    let Some(positions) = three(positions) else { return Err(format_warning(&name, "positions", positions)) };
+    let mut optional = |which: MeshVertexAttribute, what: &'static str| -> Result<Option<_>, ExtractionWarning> {
+        let Some(values) = attribute(which)? else { return Ok(None) };
+        let numbers = attribute::numbers(values);
+        if numbers.is_none() {
+            warnings.push(format_warning(&name, what, values));
         }
+        Ok(numbers)
     };
-    let uv1 = match attribute(Mesh::ATTRIBUTE_UV_1)? {
-        None => None,
-        Some(VertexAttributeValues::Float32x2(uv1)) => Some(uv1.iter().map(|&uv| Vec2::from(uv)).collect()),
-        Some(other) => {
-            warnings.push(format_warning(&name, "UV1", other));
-            None
-        }
-    };
-    if attribute(Mesh::ATTRIBUTE_COLOR)?.is_some() {
-        warnings.push(ExtractionWarning::VertexColours { name: name.clone() });
-    }
-    Ok(scene::Mesh { name, topology, indices, positions, normals, uv1, ..scene::Mesh::default() })
+    let normals = optional(Mesh::ATTRIBUTE_NORMAL, "normals")?;
+    let uv0 = optional(Mesh::ATTRIBUTE_UV_0, "UV0")?;
+    let uv1 = optional(Mesh::ATTRIBUTE_UV_1, "UV1")?;
+    let colours = optional(Mesh::ATTRIBUTE_COLOR, "colours")?;
+    let tangents = optional(Mesh::ATTRIBUTE_TANGENT, "tangents")?;
+    Ok(scene::Mesh {
+        name,
+        topology,
+        indices,
+        positions,
+        normals: normals.map(|normals| normals.iter().map(|normal| normal.truncate()).collect()),
+        uv0: uv0.map(|uv| uv.iter().map(|uv| uv.xy()).collect()),
+        uv1: uv1.map(|uv| uv.iter().map(|uv| uv.xy()).collect()),
+        colours,
+        tangents,
+    })
+}
+
+fn three(values: &VertexAttributeValues) -> Option<Vec<Vec3>> {
+    Some(attribute::numbers(values)?.iter().map(|position| position.truncate()).collect())
 }
 
 fn format_warning(name: &str, attribute: &'static str, found: &VertexAttributeValues) -> ExtractionWarning {
-    let (expected, consequence) = match attribute {
-        "positions" => ("Float32x3", "it is left out"),
-        "normals" => ("Float32x3", "it is taken as flat-shaded"),
-        _ => ("Float32x2", "it gets no lightmap"),
+    let consequence = match attribute {
+        "positions" => "it is left out",
+        "normals" => "it is taken as flat-shaded",
+        "UV0" => "its textures are not laid out on it",
+        "UV1" => "it gets no lightmap",
+        "colours" => "its material's colour alone counts",
+        _ => "they are made anew",
     };
     let name = name.to_owned();
-    ExtractionWarning::AttributeFormat { name, attribute, found: found.enum_variant_name(), expected, consequence }
+    ExtractionWarning::AttributeFormat { name, attribute, found: found.enum_variant_name(), consequence }
 }

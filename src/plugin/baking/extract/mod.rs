@@ -3,13 +3,16 @@
 //!
 //! Nothing depends on entity numbers: everything is ordered by its stable id, and equal ids by where they stand.
 
+mod attribute;
 mod camera;
 mod environment;
 mod light;
 mod material;
 mod mesh;
+mod texture;
 mod warning;
 
+pub use texture::Unreadable;
 pub use warning::{ExtractionWarning, Unsimulated};
 
 use super::markers::{LightBlocker, LightmapReceiver};
@@ -32,27 +35,27 @@ pub struct Extraction {
     seen: Seen,
 }
 
-/// Where assets that were read already lie in the scene; `None` for a mesh that could not be read.
+/// Where assets that were read already lie in the scene; `None` for one that could not be read.
 #[derive(Clone, Debug, Default)]
 struct Seen {
     meshes: HashMap<AssetId<Mesh>, Option<usize>>,
+    textures: HashMap<AssetId<Image>, Option<usize>>,
     materials: HashMap<AssetId<StandardMaterial>, usize>,
 }
 
 /// Reads the world as it stands; its transforms and visibility must have been propagated, as they are in `Last`.
 pub fn extract_scene(world: &mut World, settings: &SceneSettings) -> Extraction {
     let mut out = Extraction::default();
-    let lights = light::find(world, &mut out.warnings);
+    let lights = light::find(world);
     let meshes = find_meshes(world, &mut out.warnings);
     let things: Vec<Thing> = meshes.into_iter().chain(lights).collect();
     for thing in name_all(world, things, &mut out) {
         match thing.kind {
             Kind::Mesh(request) => mesh::extract(world, &thing, request, settings, &mut out),
-            Kind::RectLight => light::extract(world, &thing, settings, &mut out),
+            Kind::Light(kind) => light::extract(world, &thing, kind, settings, &mut out),
         }
         out.entities.insert(thing.id, thing.entity);
     }
-    material::summarise(&mut out.warnings);
     environment::extract(world, settings, &mut out);
     camera::extract(world, &mut out);
     out
@@ -70,7 +73,16 @@ struct Thing {
 #[derive(Clone, Copy)]
 enum Kind {
     Mesh(Option<LightmapRequest>),
-    RectLight,
+    Light(light::LightKind),
+}
+
+impl Kind {
+    fn order(self) -> Option<light::LightKind> {
+        match self {
+            Self::Mesh(_) => None,
+            Self::Light(kind) => Some(kind),
+        }
+    }
 }
 
 impl Thing {
@@ -86,7 +98,7 @@ fn name_all(world: &World, mut things: Vec<Thing>, out: &mut Extraction) -> Vec<
         let place = world
             .get::<GlobalTransform>(thing.entity)
             .map_or([0; 16], |transform| transform.to_matrix().to_cols_array().map(f32::to_bits));
-        (thing.id.clone(), matches!(thing.kind, Kind::RectLight), place, thing.entity)
+        (thing.id.clone(), thing.kind.order(), place, thing.entity)
     });
     for twins in things.chunk_by(|a, b| a.id == b.id).filter(|twins| twins.len() > 1) {
         let id = twins[0].name.clone();

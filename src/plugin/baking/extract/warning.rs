@@ -1,46 +1,29 @@
 //! What of a Bevy scene a bake leaves out or takes for something simpler, by name.
 
+use super::texture::Unreadable;
 use thiserror::Error;
 
-/// What this version does not simulate.
+/// What of a material is not simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum Unsimulated {
-    /// `base_color_texture`.
-    BaseColourTexture,
-    /// `emissive_texture`.
-    EmissiveTexture,
-    /// `metallic` and its texture.
-    Metallic,
-    /// `normal_map_texture`.
-    NormalMap,
     /// `depth_map`.
     DepthMap,
-    /// `specular_transmission`.
-    SpecularTransmission,
-    /// `diffuse_transmission`.
-    DiffuseTransmission,
-    /// `clearcoat`.
-    Clearcoat,
-    /// An alpha mode other than opaque.
-    Alpha,
-    /// `unlit`.
-    Unlit,
+    /// `anisotropy_strength` and its texture.
+    Anisotropy,
+    /// `clearcoat_normal_texture`.
+    ClearcoatNormalMap,
+    /// `specular_texture` and `specular_tint_texture`.
+    SpecularTextures,
 }
 
 impl std::fmt::Display for Unsimulated {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Self::BaseColourTexture => "base colour texture (taken as base_color)",
-            Self::EmissiveTexture => "emissive texture (taken as emissive)",
-            Self::Metallic => "metallic reflection (its diffuse rest alone reflects)",
-            Self::NormalMap => "normal map",
-            Self::DepthMap => "depth map",
-            Self::SpecularTransmission => "specular transmission (taken as opaque)",
-            Self::DiffuseTransmission => "diffuse transmission (taken as opaque)",
-            Self::Clearcoat => "clearcoat",
-            Self::Alpha => "transparency (taken as opaque)",
-            Self::Unlit => "unlit (taken as lit)",
+            Self::DepthMap => "depth map (taken as flat)",
+            Self::Anisotropy => "anisotropy (taken as equally rough in all directions)",
+            Self::ClearcoatNormalMap => "normal map of the clear coat (taken as smooth)",
+            Self::SpecularTextures => "specular textures (reflectance and specular_tint alone count)",
         })
     }
 }
@@ -79,7 +62,7 @@ pub enum ExtractionWarning {
         name: String,
     },
     /// An attribute is not of the format that is read.
-    #[error("mesh \"{name}\" has its {attribute} as {found} where {expected} is read, so {consequence}")]
+    #[error("mesh \"{name}\" has its {attribute} as {found}, which cannot be read, so {consequence}")]
     AttributeFormat {
         /// The entity.
         name: String,
@@ -87,8 +70,6 @@ pub enum ExtractionWarning {
         attribute: &'static str,
         /// Its format.
         found: &'static str,
-        /// The format that is read.
-        expected: &'static str,
         /// What follows.
         consequence: &'static str,
     },
@@ -103,12 +84,6 @@ pub enum ExtractionWarning {
     /// The mesh is a coarser level of detail.
     #[error("mesh \"{name}\" is shown from a distance only (VisibilityRange), so it is left out")]
     DistantLevelOfDetail {
-        /// The entity.
-        name: String,
-    },
-    /// The mesh is coloured by vertex.
-    #[error("mesh \"{name}\" has vertex colours, which are not simulated yet; its base_color alone counts")]
-    VertexColours {
         /// The entity.
         name: String,
     },
@@ -128,36 +103,56 @@ pub enum ExtractionWarning {
         name: String,
     },
     /// The material has properties that are not simulated.
-    #[error("material \"{name}\" has what is not simulated yet: {}", list(what))]
+    #[error("material \"{name}\" has what is not simulated: {}", list(what))]
     NotSimulated {
         /// The material, or the entity that it is on.
         name: String,
         /// The properties.
         what: Vec<Unsimulated>,
     },
-    /// Some materials reflect specularly.
-    #[error("{count} materials have a specular reflection (\"{first}\" is one), which is not simulated yet")]
-    Specular {
-        /// How many.
-        count: usize,
-        /// The first of them.
-        first: String,
+    /// A picture of a material cannot be read.
+    #[error("the {what} of \"{name}\" {why}; until then the material does without it")]
+    TextureNotRead {
+        /// The material, or the entity that it is on.
+        name: String,
+        /// Which of its pictures.
+        what: &'static str,
+        /// Why not.
+        why: Unreadable,
     },
-    /// A light of a kind that is not baked.
-    #[error("{kind} \"{name}\" is not baked yet; Bevy goes on adding its direct light")]
-    LightNotBaked {
+    /// A light that shines through a picture.
+    #[error("light \"{name}\" shines through a picture ({component}), which is not simulated: it is baked without")]
+    LightPicture {
         /// The entity.
         name: String,
-        /// Its kind.
-        kind: &'static str,
+        /// The component that holds the picture.
+        component: &'static str,
     },
     /// Light from around that is not baked.
-    #[error("{kind} of \"{name}\" is not baked yet, and Bevy keeps its diffuse part off lightmapped meshes")]
+    #[error("{kind} of \"{name}\" is not baked, and Bevy keeps its diffuse part off lightmapped meshes; {instead}")]
     EnvironmentNotBaked {
         /// The entity.
         name: String,
         /// Its kind.
         kind: &'static str,
+        /// What to do.
+        instead: &'static str,
+    },
+    /// A picture of the sky cannot be read.
+    #[error("the environment map of \"{name}\" {why}; until then it is not baked")]
+    EnvironmentNotRead {
+        /// The entity, or what asks for it.
+        name: String,
+        /// Why not.
+        why: Unreadable,
+    },
+    /// Only a blurred picture of the sky can be read.
+    #[error("the specular map of \"{name}\" {why}; its diffuse map stands in for it, which blurs its light")]
+    EnvironmentBlurred {
+        /// The entity.
+        name: String,
+        /// Why not.
+        why: Unreadable,
     },
     /// Ambient light that Bevy goes on adding.
     #[error(
