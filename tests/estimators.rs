@@ -18,7 +18,12 @@ const RUNS: u64 = 16;
 fn runs(scene: &Scene, points: &[MeterPoint], samples: u32, estimator: Estimator) -> Welford {
     let mut means = Welford::default();
     for run in 0..RUNS {
-        let transport = Transport { estimator, max_bounces: None, seed: 1000 * (estimator as u64 + 1) + run, ..Transport::default() };
+        let transport = Transport {
+            estimator,
+            max_bounces: None,
+            seed: 1000 * (estimator as u64 + 1) + run,
+            ..Transport::default()
+        };
         let readings: Vec<MeterReading> = read(scene, points, samples, transport);
         means.push(readings.iter().map(|reading| reading.irradiance.y).sum::<f64>() / points.len() as f64);
     }

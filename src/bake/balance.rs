@@ -80,9 +80,8 @@ fn unmeasured_absorption(
         let weights = square_to_triangle(Vec2::new(u, v));
         let start = tracer.start_on_triangle(triangle, weights.to_array(), normal);
         let paths = Paths { key: combine(point_key, point), count: PATHS_PER_POINT, clamp: None };
-        let estimate = Estimate::gather(paths, cancel, |sobol, rays| {
-            tracer.diffuse_radiance(&start, sobol, transport, rays)
-        })?;
+        let estimate =
+            Estimate::gather(paths, cancel, |sobol, rays| tracer.diffuse_radiance(&start, sobol, transport, rays))?;
         let absorption = Vec3::ONE - tracer.diffuse_albedo(triangle, weights.to_array());
         Some(absorption.as_dvec3() * estimate.mean)
     })?;

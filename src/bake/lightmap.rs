@@ -78,8 +78,7 @@ pub fn bake_lightmap(
     let work = workers.gather(
         &sites,
         |site, cancel| {
-            let paths =
-                Paths { key: site.key, count: settings.samples_per_texel, clamp: settings.transport.clamp };
+            let paths = Paths { key: site.key, count: settings.samples_per_texel, clamp: settings.transport.clamp };
             Estimate::gather(paths, cancel, |sobol, rays| {
                 let [u, v, ..] = sobol.draw(Dimensions::Start);
                 let start = site.texel.start(&tracer, Vec2::new(u, v));
@@ -92,7 +91,8 @@ pub fn bake_lightmap(
     workers.announce(Stage::Repair)?;
     let pages = pages(&atlas, &sites, &work.results);
     let warnings = faults.into_iter().map(BakeWarning::from).chain(overlaps);
-    let report = BakeReport { energy_balance: balance, ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings) };
+    let report =
+        BakeReport { energy_balance: balance, ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings) };
     let baked_lights = scene.lights.iter().filter(|light| light.faults().is_empty()).map(|light| light.id().clone());
     let mut baked_lights: Vec<StableId> = baked_lights.collect();
     baked_lights.sort();

@@ -43,7 +43,7 @@ pub use units::{
 };
 pub use warp::{
     cosine_hemisphere_pdf, cosine_hemisphere_to_square, disk_pdf, disk_to_square, square_to_cosine_hemisphere,
-    square_to_disk, square_to_triangle, square_to_uniform_cone, square_to_uniform_hemisphere,
-    square_to_uniform_sphere, triangle_pdf, triangle_to_square, uniform_cone_pdf, uniform_cone_to_square,
-    uniform_hemisphere_pdf, uniform_hemisphere_to_square, uniform_sphere_pdf, uniform_sphere_to_square,
+    square_to_disk, square_to_triangle, square_to_uniform_cone, square_to_uniform_hemisphere, square_to_uniform_sphere,
+    triangle_pdf, triangle_to_square, uniform_cone_pdf, uniform_cone_to_square, uniform_hemisphere_pdf,
+    uniform_hemisphere_to_square, uniform_sphere_pdf, uniform_sphere_to_square,
 };

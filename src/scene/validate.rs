@@ -83,8 +83,7 @@ impl Mesh {
         if let Some(vertex) = self.positions.iter().position(|position| !position.is_finite()) {
             kinds.push(FaultKind::NonFinitePosition { vertex });
         }
-        let lengths =
-            [
+        let lengths = [
             ("normals", self.normals.as_ref().map(Vec::len)),
             ("UV0 coordinates", self.uv0.as_ref().map(Vec::len)),
             ("UV1 coordinates", self.uv1.as_ref().map(Vec::len)),
@@ -156,7 +155,8 @@ mod tests {
     use super::*;
     use crate::artefact::StableId;
     use crate::scene::{
-        Filter, Indices, Light, LightmapRequest, Material, RectLight, Scattering, Standard, Texels, Texture, TextureRef, UvChannel,
+        Filter, Indices, Light, LightmapRequest, Material, RectLight, Scattering, Standard, Texels, Texture,
+        TextureRef, UvChannel,
     };
 
     fn sound() -> Scene {

@@ -65,12 +65,6 @@ impl Attributes {
         Self { needs, ..Self::default() }
     }
 
-    /// Whether there are any.
-    #[cfg(test)]
-    pub(super) fn is_empty(&self) -> bool {
-        self.vertex_count == 0
-    }
-
     /// Memory that they hold [bytes].
     pub(super) fn memory_bytes(&self) -> u64 {
         let uv = (self.uv[0].len() + self.uv[1].len()) * size_of::<Vec2>();

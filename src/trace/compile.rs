@@ -66,7 +66,9 @@ impl Compiled {
                 world.add_light(light);
             }
         }
-        if let Some(map) = scene.environment.as_ref().filter(|_| sound.environment && effects.has(Effect::EnvironmentMap)) {
+        if let Some(map) =
+            scene.environment.as_ref().filter(|_| sound.environment && effects.has(Effect::EnvironmentMap))
+        {
             world.set_environment(map);
         }
         let sky_radiance = if effects.has(Effect::ConstantSky) { sky_radiance } else { Vec3::ZERO };

@@ -87,7 +87,9 @@ impl Surface {
 fn scattering(material: &Material, effects: EffectSet) -> Scattering {
     match &material.scattering {
         Scattering::Standard(standard) => standard_scattering(standard, effects),
-        Scattering::Mirror | Scattering::Phong { .. } if !effects.has(Effect::SpecularReflection) => Scattering::Diffuse,
+        Scattering::Mirror | Scattering::Phong { .. } if !effects.has(Effect::SpecularReflection) => {
+            Scattering::Diffuse
+        }
         Scattering::Refraction { .. } if !effects.has(Effect::Refraction) => Scattering::Diffuse,
         Scattering::Phong { specular: Vec3::ZERO, .. } => Scattering::Diffuse,
         other => other.clone(),
@@ -118,10 +120,8 @@ fn standard_scattering(standard: &Standard, effects: EffectSet) -> Scattering {
         kept.reflectance = 0.0;
     }
     let is_glossy = kept.metallic > 0.0 || (kept.reflectance > 0.0 && kept.specular_tint != Vec3::ZERO);
-    let is_lambertian = !is_glossy
-        && kept.specular_transmission == 0.0
-        && kept.diffuse_transmission == 0.0
-        && kept.clearcoat == 0.0;
+    let is_lambertian =
+        !is_glossy && kept.specular_transmission == 0.0 && kept.diffuse_transmission == 0.0 && kept.clearcoat == 0.0;
     if is_lambertian { Scattering::Diffuse } else { Scattering::Standard(Box::new(kept)) }
 }
 
@@ -238,8 +238,11 @@ mod tests {
         let surface = Surface::new(&metal, EffectSet::NONE);
         assert_eq!(surface.scattering, Scattering::Diffuse);
         let map = Some(TextureRef { texture: 0, uv: UvChannel::Uv1 });
-        let cut =
-            Material { alpha: Alpha::Mask { cutoff: 0.5 }, base_colour_texture: map, ..Material::diffuse("l", Vec3::ONE) };
+        let cut = Material {
+            alpha: Alpha::Mask { cutoff: 0.5 },
+            base_colour_texture: map,
+            ..Material::diffuse("l", Vec3::ONE)
+        };
         let effects = EffectSet::NONE.with(Effect::Textures);
         let surface = Surface::new(&cut, effects);
         assert!(!surface.passes && surface.base_colour_texture == map);

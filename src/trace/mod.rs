@@ -4,13 +4,12 @@
 
 mod accel;
 mod attributes;
-mod effects;
-mod kernel;
-mod texture;
 mod bsdf;
 mod census;
 mod closed;
 mod compile;
+mod effects;
+mod kernel;
 mod light;
 mod material;
 mod mis;
@@ -21,6 +20,7 @@ mod surface;
 mod tangents;
 #[cfg(test)]
 mod testing;
+mod texture;
 mod tracer;
 mod transport;
 mod triangle;

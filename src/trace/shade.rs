@@ -131,9 +131,7 @@ impl Tracer {
             Scattering::None => Bsdf::None,
             Scattering::Diffuse => Bsdf::Lambert(Lambert { albedo: base_colour }),
             Scattering::Mirror => Bsdf::Mirror(Mirror { reflectance: base_colour }),
-            Scattering::Refraction { ior } => {
-                Bsdf::Refraction(Refraction { tint: base_colour, eta: eta(*ior) })
-            }
+            Scattering::Refraction { ior } => Bsdf::Refraction(Refraction { tint: base_colour, eta: eta(*ior) }),
             &Scattering::Phong { specular, exponent } => {
                 Bsdf::Phong(Phong { diffuse: base_colour, specular, exponent })
             }

@@ -25,17 +25,14 @@ pub(crate) fn run(args: &PlanArgs, cancel: &CancelToken) -> Result<(), Failure> 
 }
 
 fn summary(plan: &BakePlan, warnings: &[String]) -> serde_json::Value {
-    let effects = plan
-        .effects
-        .iter()
-        .map(|effect| {
-            json!({
-                "effect": effect.effect.name(),
-                "on": effect.on,
-                "reason": effect.reason,
-                "cost_share": effect.cost_share,
-            })
-        });
+    let effects = plan.effects.iter().map(|effect| {
+        json!({
+            "effect": effect.effect.name(),
+            "on": effect.on,
+            "reason": effect.reason,
+            "cost_share": effect.cost_share,
+        })
+    });
     let predicted =
         plan.predicted.iter().map(|prediction| json!({ "error": prediction.error, "seconds": prediction.seconds }));
     json!({

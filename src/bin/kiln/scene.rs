@@ -41,10 +41,8 @@ pub(crate) fn transport(args: &SceneArgs) -> Transport {
         EstimatorArg::Light => Estimator::Light,
         EstimatorArg::Bsdf => Estimator::Bsdf,
     };
-    let effects = ForcedEffects {
-        on: args.with.iter().copied().collect(),
-        off: args.without.iter().copied().collect(),
-    };
+    let effects =
+        ForcedEffects { on: args.with.iter().copied().collect(), off: args.without.iter().copied().collect() };
     Transport { estimator, max_bounces: args.max_bounces.0, seed: args.seed, clamp: args.clamp, effects }
 }
 

@@ -35,8 +35,7 @@ pub(super) struct World {
 
 impl World {
     pub(super) fn new(scene: &Scene, sound: &Sound, instances: &[usize], effects: EffectSet) -> Self {
-        let surfaces: Vec<Surface> =
-            scene.materials.iter().map(|material| Surface::new(material, effects)).collect();
+        let surfaces: Vec<Surface> = scene.materials.iter().map(|material| Surface::new(material, effects)).collect();
         let of = |index: &usize| &scene.instances[*index];
         let needs = instances.iter().map(of).fold(Needs::default(), |needs, instance| {
             needs.and(surfaces[instance.material].needs(&scene.meshes[instance.mesh], effects))

@@ -199,7 +199,6 @@ impl Lights {
         discs.chain(sky)
     }
 
-
     /// Radiance of the picture of the sky alone in a direction, which a camera may see [cd/m²].
     pub(in crate::trace) fn sky_picture(&self, wi: Vec3) -> Vec3 {
         self.environment.as_ref().map_or(Vec3::ZERO, |environment| environment.look(wi).0)

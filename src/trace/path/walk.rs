@@ -203,9 +203,8 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         let place = hit.place();
         if surface.shines(shape, ray.direction) {
             let source = tracer.emitter_of[hit.triangle as usize];
-            let weight = self.weight_of_met(ray, |context| {
-                tracer.lights.pdf(source, context, ray.direction, passed + hit.t)
-            });
+            let weight =
+                self.weight_of_met(ray, |context| tracer.lights.pdf(source, context, ray.direction, passed + hit.t));
             self.radiance += self.throughput * tracer.glow::<K>(surface, place) * weight;
         }
         if ray.survival.is_some() && self.max_bounces.is_some_and(|cap| self.number >= cap) {
