@@ -105,6 +105,19 @@ impl TriangleShape {
         a + (b - a) * second + (c - a) * third
     }
 
+    /// Whether a point on the triangle, at these weights of the second and third vertex, is its own and not that of a
+    /// neighbour of the same winding that shares an edge: of each edge one of its two triangles owns the points.
+    pub(super) fn owns(&self, [second, third]: [f32; 2]) -> bool {
+        // As far off as three roundings of weights in [0, 1] can bring a point of an edge.
+        const ON_EDGE: f32 = 2.0 * f32::EPSILON;
+        let weights = [1.0 - second - third, second, third];
+        let is_before = |a: Vec3, b: Vec3| a.to_array().partial_cmp(&b.to_array()) == Some(std::cmp::Ordering::Less);
+        (0..3).all(|opposite| {
+            let [from, to] = [1, 2].map(|step| self.vertices[(opposite + step) % 3]);
+            weights[opposite] > ON_EDGE || is_before(from, to)
+        })
+    }
+
     /// Area [m²].
     pub(super) fn area(&self) -> f64 {
         let [a, b, c] = self.vertices.map(Vec3::as_dvec3);

@@ -322,6 +322,10 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             if !surface.passes {
                 return true;
             }
+            // On the edge between two triangles a ray meets both; only one of them is to dim it.
+            if !tracer.triangles[hit.triangle as usize].owns(hit.barycentric) {
+                return false;
+            }
             share *= tracer.passage::<K>(surface, hit.place(), direction).transmittance;
             share == Vec3::ZERO
         };

@@ -147,3 +147,17 @@ fn points_lie_within_the_bound() {
     }
     assert!((0.02..1.0).contains(&worst), "{worst}");
 }
+
+/// Of an edge that two triangles share, one owns each point, whichever it is; what is inside is its triangle's own.
+#[test]
+fn one_of_two_neighbours_owns_their_edge() {
+    let corners = [Vec3::new(0.0, 0.0, 1.0), Vec3::new(2.0, 0.0, 0.0), Vec3::new(2.0, 3.0, 0.0), Vec3::new(0.0, 3.0, 1.0)];
+    let placement = Placement::new(&Affine3A::IDENTITY);
+    let [first, second] = [[0, 1, 2], [0, 2, 3]].map(|t| placement.triangle(t.map(|i| corners[i])).unwrap());
+    for step in 1..10 {
+        // Along the diagonal, from corner 0 to corner 2.
+        let along = step as f32 / 10.0;
+        assert!(first.owns([0.0, along]) != second.owns([along, 0.0]), "{along}");
+        assert!(first.owns([0.3, 0.05 * step as f32]) && second.owns([0.3, 0.05 * step as f32]));
+    }
+}
