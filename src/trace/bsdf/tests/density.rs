@@ -4,7 +4,7 @@
 use super::super::dielectric::Dielectric;
 use super::super::ggx::{Ggx, half_vector, mirrored};
 use super::super::{BsdfSample, Density};
-use super::subject::{ANGLES, Subject, dielectric, everything, outgoing, specular, schlick};
+use super::subject::{ANGLES, Subject, dielectric, everything, outgoing, schlick, specular};
 use crate::math::mix64;
 use crate::math::testing::{ChiSquared, Domain, Rejection, integrate};
 use glam::{Vec2, Vec3};

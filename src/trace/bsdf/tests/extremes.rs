@@ -57,7 +57,7 @@ fn hold(bsdf: &Bsdf, random: &mut Random, what: &dyn std::fmt::Debug) {
             assert!((sample.wi.length() - 1.0).abs() < 1e-5, "{what:?} from {wo} by {u:?}: {sample:?}");
             wi = sample.wi;
         } else {
-            wi.z *= if random.bits() % 2 == 0 { 1.0 } else { -1.0 };
+            wi.z *= if random.bits().is_multiple_of(2) { 1.0 } else { -1.0 };
         }
         let (value, pdf) = (bsdf.evaluate(wo, wi), bsdf.pdf(wo, wi));
         let sound = value.is_finite() && value.min_element() >= 0.0 && pdf.is_finite() && pdf >= 0.0;
@@ -82,7 +82,7 @@ fn the_standard_material_stays_finite() {
             specular_tint: Vec3::new(unit(r), unit(r), unit(r)),
             specular_transmission: unit(r),
             eta: [1.5, 1.0 / 1.5, 1.0, 1.001, 0.999, 3.0, 0.3, 1.000_1][(r.bits() % 8) as usize],
-            interior: if r.bits() % 2 == 0 { Interior::ThinWalled } else { VOLUME },
+            interior: if r.bits().is_multiple_of(2) { Interior::ThinWalled } else { VOLUME },
             diffuse_transmission: unit(r),
             clearcoat: unit(r),
             clearcoat_perceptual_roughness: unit(r),
