@@ -7,20 +7,23 @@
 
 use super::fresnel::{SCHLICK_AVERAGE, Schlick, schlick_weight};
 use super::ggx::{Ggx, SMOOTH_BELOW, mirrored};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
 /// Nodes over the angle.
 const ANGLES: usize = 64;
 
 /// Nodes over the roughness.
-const ROUGHNESSES: usize = 33;
+const ROUGHNESSES: usize = 49;
+
+/// Perceptual roughness below which the rows lie more densely than their mean.
+const DENSE_BELOW: f32 = 0.8;
 
 /// Nodes of the averages over the roughness.
 const AVERAGES: usize = 129;
 
 /// Nodes of the quadrature over visible normals: around, and over the height of the cap.
-const QUADRATURE: [usize; 2] = [16, 24];
+const QUADRATURE: [usize; 2] = [32, 40];
 
 /// Directional albedo and its average, for every angle and roughness.
 #[derive(Clone, Debug)]
@@ -75,7 +78,7 @@ impl AlbedoTables {
         let rule = Quadrature::new(QUADRATURE);
         let mut nodes = Vec::with_capacity(ROUGHNESSES * ANGLES);
         for row in 0..ROUGHNESSES {
-            let roughness = least() + (1.0 - least()) * row as f32 / (ROUGHNESSES - 1) as f32;
+            let roughness = roughness_at(row as f32 / (ROUGHNESSES - 1) as f32);
             let ggx = Ggx::new(roughness.max(1.001 * least()));
             for column in 0..ANGLES {
                 let cos = unwarped(column as f32 / (ANGLES - 1) as f32, roughness);
@@ -84,7 +87,7 @@ impl AlbedoTables {
         }
         let mut tables = Self { nodes, averages: vec![[0.0; 2]; AVERAGES] };
         let averages = (0..AVERAGES).map(|index| {
-            let roughness = least() + (1.0 - least()) * index as f32 / (AVERAGES - 1) as f32;
+            let roughness = roughness_at(index as f32 / (AVERAGES - 1) as f32);
             let average = tables.at(roughness.max(1.001 * least())).integrated();
             [(1.0 - average.white()).max(0.0).sqrt().sqrt(), average.f90]
         });
@@ -99,7 +102,7 @@ impl AlbedoTables {
             let average = Albedo { f0: 1.0 - SCHLICK_AVERAGE, f90: SCHLICK_AVERAGE };
             return RoughnessAlbedo { rows: None, fraction: 0.0, warp: 1.0, missing: 0.0, average };
         }
-        let height = ((perceptual_roughness - least()) / (1.0 - least())).clamp(0.0, 1.0);
+        let height = height_of(perceptual_roughness);
         let (row, fraction) = cell(height, ROUGHNESSES);
         let rows = [row, row + 1].map(|row| &self.nodes[row * ANGLES..(row + 1) * ANGLES]);
         let (index, t) = cell(height, AVERAGES);
@@ -166,10 +169,23 @@ fn least() -> f32 {
     SMOOTH_BELOW.sqrt()
 }
 
+/// Where a perceptual roughness lies among the rows, in [0, 1]: they are dense where it is small.
+#[inline]
+fn height_of(perceptual_roughness: f32) -> f32 {
+    let (r, least) = (perceptual_roughness.clamp(least(), 1.0), least());
+    (r - least) * (1.0 + DENSE_BELOW) / ((r + DENSE_BELOW) * (1.0 - least))
+}
+
+/// The inverse of [`height_of`].
+fn roughness_at(height: f32) -> f32 {
+    let (y, least) = (height * (1.0 - least()), least());
+    (least * (1.0 + DENSE_BELOW) + y * DENSE_BELOW) / (1.0 + DENSE_BELOW - y)
+}
+
 /// The scale of cosines on which the nodes over the angle lie densely.
 #[inline]
 fn warp(perceptual_roughness: f32) -> f32 {
-    perceptual_roughness
+    0.03 + 0.3 * perceptual_roughness
 }
 
 #[inline]
@@ -196,7 +212,8 @@ fn cell(x: f32, nodes: usize) -> (usize, f32) {
 /// A rule over the spherical cap of visible normals: equal steps around, Gauss and Legendre's in the cube root of the
 /// height, since the rim holds the steep normals, which are few and matter most.
 pub(super) struct Quadrature {
-    angles: Vec<f32>,
+    /// Points of the unit circle.
+    angles: Vec<Vec2>,
     /// Heights and their weights.
     heights: Vec<[f64; 2]>,
 }
@@ -204,7 +221,7 @@ pub(super) struct Quadrature {
 impl Quadrature {
     pub(super) fn new([around, up]: [usize; 2]) -> Self {
         // Half a turn is enough: the other is its mirror image.
-        let angles = (0..around).map(|i| PI * (i as f32 + 0.5) / around as f32).collect();
+        let angles = (0..around).map(|i| Vec2::from_angle(PI * (i as f32 + 0.5) / around as f32)).collect();
         let heights = gauss_legendre(up).into_iter().map(|[q, weight]| [q * q * q, 3.0 * q * q * weight]).collect();
         Self { angles, heights }
     }

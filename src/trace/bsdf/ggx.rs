@@ -4,7 +4,7 @@
 //! Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps". The usual quotients of cosines are
 //! multiplied out, so that nothing is divided by a cosine that may vanish.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, TAU};
 
 /// Roughness α below which a surface counts as perfectly smooth. At this roughness half of the normals lie within
@@ -42,19 +42,19 @@ impl Ggx {
     /// A normal that is seen from `wo`, with density [`visible`](Self::visible).
     #[inline]
     pub(super) fn sample(&self, wo: Vec3, [u, v]: [f32; 2]) -> Vec3 {
-        self.cap_point(wo, TAU * u, 1.0 - v)
+        self.cap_point(wo, Vec2::from_angle(TAU * u), 1.0 - v)
     }
 
-    /// The visible normal at an angle around and a height in (0, 1] of the spherical cap.
+    /// The visible normal at a point of the unit circle and a height in (0, 1] of the spherical cap.
     #[inline]
-    pub(super) fn cap_point(&self, wo: Vec3, angle: f32, height: f32) -> Vec3 {
+    pub(super) fn cap_point(&self, wo: Vec3, around: Vec2, height: f32) -> Vec3 {
         let o = Vec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalize();
         // The cap's point c has c.z = z − o.z; what is wanted is c + o, and this keeps it from cancellation.
         let z = height * (1.0 + o.z);
         let lower = (o.x * o.x + o.y * o.y) / (1.0 + o.z);
         let sin = ((1.0 + o.z) * (1.0 - height) * (lower + z)).max(0.0).sqrt();
-        let x = sin * angle.cos() + o.x;
-        let y = sin * angle.sin() + o.y;
+        let x = sin * around.x + o.x;
+        let y = sin * around.y + o.y;
         Vec3::new(self.alpha * x, self.alpha * y, z).normalize()
     }
 

@@ -33,6 +33,7 @@ use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
 /// A way to scatter light.
+#[allow(clippy::large_enum_variant, reason = "one is made per hit, on the stack; a box would cost more than the bytes")]
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Bsdf<'a> {
     /// Everything is absorbed.
