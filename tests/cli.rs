@@ -3,6 +3,8 @@
 
 #[path = "support/glb.rs"]
 mod glb;
+#[path = "cli/skies.rs"]
+mod skies;
 
 use glb::Glb;
 use serde_json::Value;
@@ -242,49 +244,6 @@ fn a_scene_without_light_is_refused() {
     });
     assert_fails(&output, 1, "the scene has no light");
     assert!(!folder.path().join("out").exists());
-}
-
-/// A black picture of the sky but for one pixel, in the format of Greg Ward's Radiance.
-fn sky(folder: &TempDir, mantissas: [u8; 4]) -> PathBuf {
-    let file = folder.path().join("sky.hdr");
-    let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n".to_vec();
-    for pixel in 0..8 {
-        // The upper half's second quarter from the left, which is towards -Z.
-        bytes.extend(if pixel == 1 { mantissas } else { [0; 4] });
-    }
-    std::fs::write(&file, bytes).unwrap();
-    file
-}
-
-#[test]
-fn a_sky_from_a_file_is_taken_by_every_verb_and_a_bad_one_is_a_sentence() {
-    let folder = temp_dir::TempDir::new().unwrap();
-    let scene = data("cornell.glb");
-    let scene = scene.to_str().unwrap();
-    let good = sky(&folder, [128, 64, 32, 129]);
-    let output = run(&["plan", scene, "--environment", good.to_str().unwrap(), "--json"]);
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    let broken = folder.path().join("broken.exr");
-    std::fs::write(&broken, b"no picture").unwrap();
-    let points = folder.path().join("points.csv");
-    std::fs::write(&points, "x,y,z,nx,ny,nz\n0,0,0,0,1,0\n").unwrap();
-    let (points, out) = (points.to_str().unwrap(), folder.path().join("out.png"));
-    for (file, sentence) in [
-        (Path::new("no/such.hdr"), "there is no file no/such.hdr"),
-        (&data("README.md"), "README.md is no picture of a sky that can be read"),
-        (&broken, "broken.exr cannot be loaded"),
-    ] {
-        let file = file.to_str().unwrap();
-        for verb in [
-            &["plan", scene][..],
-            &["bake", scene, "-o", "nowhere"],
-            &["irradiance", scene, "--points", points],
-            &["render", scene, "-o", out.to_str().unwrap()],
-        ] {
-            let arguments: Vec<&str> = verb.iter().copied().chain(["--environment", file]).collect();
-            assert_fails(&run(&arguments), 1, sentence);
-        }
-    }
 }
 
 #[test]

@@ -3,6 +3,9 @@
 
 #[path = "plugin/environments.rs"]
 mod environments;
+#[allow(dead_code, reason = "the command line's tests use the rest of it")]
+#[path = "support/glb.rs"]
+mod glb;
 #[path = "plugin/lights.rs"]
 mod lights;
 #[path = "plugin/materials.rs"]

@@ -1,6 +1,6 @@
 //! Lights as Bevy has them and as the scene gets them.
 
-use super::{app, data, lit_floor, run_until_baked, small};
+use super::{app, data, glb, lit_floor, run_until_baked, small};
 use bevy::light::{DirectionalLightTexture, PointLightTexture, SpotLightTexture, SunDisk};
 use bevy::prelude::*;
 use bevy_kiln::plugin::windowless::open_scene;
@@ -8,9 +8,6 @@ use bevy_kiln::plugin::{Extraction, RangeWindow, SceneSettings, extract_scene};
 use bevy_kiln::prelude::ClearLightmaps;
 use bevy_kiln::scene::{DirectionalLight as Sun, Light, PointLight as Bulb, SpotLight as Spot};
 use std::f32::consts::{FRAC_PI_2, PI};
-
-#[path = "../support/glb.rs"]
-mod glb;
 
 fn extract(lights: impl FnOnce(&mut World)) -> Extraction {
     let mut app = app(&data(""));

@@ -1,17 +1,19 @@
 //! `StandardMaterial`, its pictures and the meshes' attributes as the scene gets them.
 
-use super::{app, data};
+use super::{app, data, glb};
 use bevy::asset::RenderAssetUsages;
 use bevy::image::{ImageAddressMode, ImageSampler, ImageSamplerDescriptor};
 use bevy::math::Affine2;
 use bevy::mesh::{MeshVertexAttribute, UvChannel, VertexAttributeValues, VertexFormat};
 use bevy::prelude::*;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
+use bevy_kiln::plugin::windowless::open_scene;
 use bevy_kiln::plugin::{EmissiveUnit, Extraction, SceneSettings, extract_scene};
 use bevy_kiln::scene::{
     Alpha, Filter, Interior, Material, NormalEncoding, NormalMap, Scattering, Standard, Texels, TextureRef,
     UvChannel as Uv, Wrap,
 };
+use serde_json::json;
 
 /// The scene of one cube with a material.
 fn extract(material: impl FnOnce(&mut Assets<Image>) -> StandardMaterial) -> Extraction {
@@ -42,7 +44,7 @@ fn standard(material: &Material) -> &Standard {
     standard
 }
 
-fn image(format: TextureFormat, width: u32, bytes: Vec<u8>) -> Image {
+fn picture(format: TextureFormat, width: u32, bytes: Vec<u8>) -> Image {
     let size = Extent3d { width, height: 1, depth_or_array_layers: 1 };
     Image::new(size, TextureDimension::D2, bytes, format, RenderAssetUsages::default())
 }
@@ -150,16 +152,16 @@ fn pictures_come_once_and_as_they_are_stored() {
             address_mode_v: ImageAddressMode::MirrorRepeat,
             ..ImageSamplerDescriptor::nearest()
         };
-        let mut shared = image(TextureFormat::Rgba8UnormSrgb, 2, vec![1, 2, 3, 4, 5, 6, 7, 8]);
+        let mut shared = picture(TextureFormat::Rgba8UnormSrgb, 2, vec![1, 2, 3, 4, 5, 6, 7, 8]);
         shared.sampler = ImageSampler::Descriptor(nearest);
         let shared = images.add(shared);
-        let _never_used = images.add(image(TextureFormat::R8Unorm, 1, vec![0]));
+        let _never_used = images.add(picture(TextureFormat::R8Unorm, 1, vec![0]));
         StandardMaterial {
             base_color_texture: Some(shared.clone()),
             emissive: LinearRgba::WHITE,
             emissive_texture: Some(shared),
             emissive_channel: UvChannel::Uv1,
-            metallic_roughness_texture: Some(images.add(image(TextureFormat::R8Unorm, 2, vec![9, 10]))),
+            metallic_roughness_texture: Some(images.add(picture(TextureFormat::R8Unorm, 2, vec![9, 10]))),
             ..default()
         }
     });
@@ -181,7 +183,7 @@ fn pictures_come_once_and_as_they_are_stored() {
 fn normal_maps_say_how_they_are_stored() {
     let map = |format, bytes: Vec<u8>, flip_normal_map_y| {
         let extraction = extract(|images| StandardMaterial {
-            normal_map_texture: Some(images.add(image(format, 1, bytes))),
+            normal_map_texture: Some(images.add(picture(format, 1, bytes))),
             flip_normal_map_y,
             ..default()
         });
@@ -198,9 +200,8 @@ fn normal_maps_say_how_they_are_stored() {
 #[test]
 fn a_picture_that_cannot_be_read_is_named_once_and_left_out() {
     let extraction = extract(|images| {
-        let compressed = images.add(image(TextureFormat::Bc7RgbaUnormSrgb, 4, vec![0; 16]));
-        let mut gone = Image::default();
-        gone.data = None;
+        let compressed = images.add(picture(TextureFormat::Bc7RgbaUnormSrgb, 4, vec![0; 16]));
+        let gone = Image { data: None, ..default() };
         StandardMaterial {
             base_color_texture: Some(compressed.clone()),
             emissive_texture: Some(compressed),
@@ -244,4 +245,73 @@ fn a_mesh_brings_all_that_a_shader_would_see() {
     // u grows to the right; v grows down, so that the bitangent of a normal map, which points up, needs a minus.
     assert!(tangents.iter().all(|tangent| (tangent.truncate() - Vec3::X).length() < 1e-5), "{tangents:?}");
     assert!(mesh.normals.as_ref().unwrap().iter().all(|normal| *normal == Vec3::Z));
+}
+
+/// A file's own pictures and extensions, through Bevy's loader.
+#[test]
+fn a_gltf_material_arrives_whole() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let mut file = glb::Glb::read(&data("punctual.glb"));
+    let mut png = std::io::Cursor::new(Vec::new());
+    let pixels = image::RgbaImage::from_raw(2, 1, vec![255, 0, 0, 255, 0, 128, 255, 51]).unwrap();
+    pixels.write_to(&mut png, image::ImageFormat::Png).unwrap();
+    let (offset, length) = (file.buffer.len(), png.get_ref().len());
+    file.buffer.extend(png.into_inner());
+    file.buffer.resize(file.buffer.len().next_multiple_of(4), 0);
+    file.json["buffers"][0]["byteLength"] = file.buffer.len().into();
+    let views = file.json["bufferViews"].as_array_mut().unwrap();
+    views.push(json!({ "buffer": 0, "byteOffset": offset, "byteLength": length }));
+    let view = views.len() - 1;
+    file.json["images"] = json!([{ "bufferView": view, "mimeType": "image/png" }]);
+    // Once without a say about edges and filters, once with one.
+    file.json["samplers"] = json!([{ "magFilter": 9728, "wrapS": 33071, "wrapT": 33648 }]);
+    file.json["textures"] = json!([{ "source": 0 }, { "source": 0, "sampler": 0 }]);
+    let turned = json!({ "KHR_texture_transform": { "scale": [2.0, 3.0], "offset": [0.5, 0.25] } });
+    file.json["materials"][0] = json!({
+        "name": "floor",
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [1.0, 0.5, 0.25, 0.5],
+            "baseColorTexture": { "index": 0, "extensions": turned },
+            "metallicRoughnessTexture": { "index": 1, "texCoord": 1 },
+        },
+        "normalTexture": { "index": 1 },
+        "emissiveFactor": [1.0, 0.0, 0.5],
+        "alphaMode": "MASK",
+        "alphaCutoff": 0.25,
+        "doubleSided": true,
+        "extensions": {
+            "KHR_materials_transmission": { "transmissionFactor": 0.5 },
+            "KHR_materials_volume": { "thicknessFactor": 0.1, "attenuationDistance": 3.0, "attenuationColor": [1, 0.5, 0] },
+            "KHR_materials_ior": { "ior": 1.33 },
+            "KHR_materials_clearcoat": { "clearcoatFactor": 0.75, "clearcoatRoughnessFactor": 0.1 },
+            "KHR_materials_emissive_strength": { "emissiveStrength": 4.0 },
+        },
+    });
+    let path = folder.path().join("material.glb");
+    file.write(&path);
+    let mut app = open_scene(&path).unwrap();
+    let settings = SceneSettings { emissive: EmissiveUnit::Nits, ..default() };
+    let Extraction { scene, warnings, .. } = extract_scene(app.world_mut(), &settings);
+    assert_eq!(warnings, []);
+    let material = &scene.materials[0];
+    assert_eq!(material.base_colour, Vec4::new(1.0, 0.5, 0.25, 0.5));
+    assert_eq!((material.alpha, material.double_sided), (Alpha::Mask { cutoff: 0.25 }, true));
+    assert_eq!(material.emitted_radiance, Vec3::new(4.0, 0.0, 2.0));
+    assert_eq!(material.uv_transform.transform_point2(Vec2::ONE), Vec2::new(2.5, 3.25));
+    let standard = standard(material);
+    assert_eq!((standard.metallic, standard.perceptual_roughness), (1.0, 1.0));
+    assert_eq!((standard.specular_transmission, standard.ior, standard.clearcoat), (0.5, 1.33, 0.75));
+    let attenuation_colour = Vec3::new(1.0, 0.5, 0.0);
+    assert_eq!(standard.interior, Interior::Volume { attenuation_colour, attenuation_distance: 3.0 });
+    let texture = |reference: Option<TextureRef>| &scene.textures[reference.unwrap().texture];
+    let colour = texture(material.base_colour_texture);
+    let Texels::Srgb8(texels) = &colour.texels else { panic!("{colour:?}") };
+    assert_eq!(**texels, [[255, 0, 0, 255], [0, 128, 255, 51]]);
+    assert_eq!((colour.wrap, colour.filter), ([Wrap::Repeat; 2], Filter::Linear), "glTF's defaults");
+    let metal = texture(standard.metallic_roughness_texture);
+    assert!(matches!(metal.texels, Texels::Linear8(_)), "{metal:?}");
+    assert_eq!((metal.wrap, metal.filter), ([Wrap::Clamp, Wrap::Mirror], Filter::Nearest));
+    assert_eq!(standard.metallic_roughness_texture.unwrap().uv, Uv::Uv1);
+    assert_eq!(material.normal_map.unwrap().encoding, NormalEncoding::OpenGl);
+    assert!(scene.meshes[0].tangents.is_some(), "the loader makes them for a normal map");
 }

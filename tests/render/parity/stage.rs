@@ -120,7 +120,7 @@ pub fn spawn(world: &mut World) -> Entity {
 /// Makes the whole hill equally rough.
 pub fn set_roughness(world: &mut World, perceptual_roughness: f32) {
     let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
-    for (_, mut material) in materials.iter_mut() {
+    for (_, material) in materials.iter_mut() {
         material.perceptual_roughness = perceptual_roughness;
     }
 }

@@ -87,12 +87,14 @@ impl Reader<'_> {
 
     fn interior(&self) -> Interior {
         let of = self.material;
-        if !(of.thickness > 0.0) {
-            return Interior::ThinWalled;
-        }
-        Interior::Volume {
-            attenuation_colour: units(of.attenuation_color.to_linear().to_vec3()),
-            attenuation_distance: of.attenuation_distance,
+        let is_body = of.thickness > 0.0;
+        if is_body {
+            Interior::Volume {
+                attenuation_colour: units(of.attenuation_color.to_linear().to_vec3()),
+                attenuation_distance: of.attenuation_distance,
+            }
+        } else {
+            Interior::ThinWalled
         }
     }
 
