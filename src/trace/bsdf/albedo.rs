@@ -141,8 +141,8 @@ impl RoughnessAlbedo<'_> {
     /// Scattering function of light that is spread so that it makes up for what is missing, if all of it comes back:
     /// (1 − E(μo)) (1 − E(μi)) / (π (1 − E_average)) (Kulla and Conty 2017).
     #[inline]
-    pub(super) fn compensation(&self, cos_o: f32, cos_i: f32) -> f32 {
-        if self.missing > 0.0 { self.missing(cos_o) * self.missing(cos_i) / (PI * self.missing) } else { 0.0 }
+    pub(super) fn compensation(&self, [missing_o, missing_i]: [f32; 2]) -> f32 {
+        if self.missing > 0.0 { missing_o * missing_i / (PI * self.missing) } else { 0.0 }
     }
 
     /// The average by quadrature over each cell's width.
