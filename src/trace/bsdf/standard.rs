@@ -4,6 +4,8 @@
 //! base and t parts of glass, a clear coat over all (`pbr_functions.wgsl`, `calculate_F0`, `calculate_diffuse_color`).
 //! Unlike on screen, the diffuse base gets only what the coat leaves, the same both ways: times (1 − E(μo))
 //! (1 − E(μi)) / (1 − E_average) per channel (Kelemen and Szirmay-Kalos 2001). So no albedo is above 1.
+//!
+//! The diffuser knows one index on both sides. Beside bent glass, on one surface, it does not follow the index squared.
 
 use super::albedo::AlbedoTables;
 use super::clearcoat::Clearcoat;
