@@ -3,7 +3,9 @@
 //! With Schlick's Fresnel term the directional albedo is linear in F0 and F90 (Karis 2013): E = F0 · A + F90 · B. The
 //! tables hold A and B; their sum is the albedo of facets that reflect all, 1 less what leaves facets only to hit
 //! others. That the averages are those of the interpolated table, not of the lobe, keeps what is built on them in
-//! balance: the share that compensation gives back is exactly what the table says is missing.
+//! balance: the share that compensation gives back is exactly what the table says is missing. An entry is within
+//! 1.5·10⁻³ of the lobe from a perceptual roughness of 0.089 on, below which Bevy displays nothing, and within 6·10⁻³
+//! of it at every other.
 
 use super::fresnel::{SCHLICK_AVERAGE, Schlick, schlick_weight};
 use super::ggx::{Ggx, SMOOTH_BELOW, mirrored};
@@ -73,7 +75,7 @@ pub(super) struct RoughnessAlbedo<'a> {
 }
 
 impl AlbedoTables {
-    /// Computes the tables: some milliseconds. Always the same.
+    /// Computes the tables: some tens of milliseconds. Always the same.
     pub(in crate::trace) fn new() -> Self {
         let rule = Quadrature::new(QUADRATURE);
         let mut nodes = Vec::with_capacity(ROUGHNESSES * ANGLES);
@@ -141,8 +143,8 @@ impl RoughnessAlbedo<'_> {
     /// Scattering function of light that is spread so that it makes up for what is missing, if all of it comes back:
     /// (1 − E(μo)) (1 − E(μi)) / (π (1 − E_average)) (Kulla and Conty 2017).
     #[inline]
-    pub(super) fn compensation(&self, cos_o: f32, cos_i: f32) -> f32 {
-        if self.missing > 0.0 { self.missing(cos_o) * self.missing(cos_i) / (PI * self.missing) } else { 0.0 }
+    pub(super) fn compensation(&self, [missing_o, missing_i]: [f32; 2]) -> f32 {
+        if self.missing > 0.0 { missing_o * missing_i / (PI * self.missing) } else { 0.0 }
     }
 
     /// The average by quadrature over each cell's width.

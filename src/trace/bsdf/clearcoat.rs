@@ -8,7 +8,7 @@
 use super::albedo::{AlbedoTables, RoughnessAlbedo};
 use super::fresnel::Schlick;
 use super::ggx::{Ggx, half_vector, mirror, mirrored};
-use super::{BsdfSample, Density};
+use super::{Proposal, Response};
 use glam::Vec3;
 
 /// The coat's reflectance along the normal and at grazing incidence, as in Bevy and glTF.
@@ -33,10 +33,10 @@ impl<'a> Clearcoat<'a> {
         if self.strength > 0.0 { self.strength * self.albedo.at(cos).of(&VARNISH).x } else { 0.0 }
     }
 
-    /// What is left for what lies below, between these two cosines.
+    /// What is left for what lies below, between directions of these two albedos.
     #[inline]
-    pub(super) fn leaves(&self, cos_o: f32, cos_i: f32) -> f32 {
-        1.0 - self.albedo(cos_o).max(self.albedo(cos_i))
+    pub(super) fn leaves(albedo_o: f32, albedo_i: f32) -> f32 {
+        1.0 - albedo_o.max(albedo_i)
     }
 
     /// Whether there is a coat and its lobe is spread out.
@@ -46,32 +46,19 @@ impl<'a> Clearcoat<'a> {
     }
 
     #[inline]
-    pub(super) fn sample(&self, wo: Vec3, [u, v, _]: [f32; 3]) -> Option<BsdfSample> {
-        let Some(surface) = &self.surface else {
-            let weight = self.strength * VARNISH.at(wo.z);
-            return Some(BsdfSample { wi: mirror(wo), weight, density: Density::Delta });
-        };
-        let wi = mirrored(wo, surface.sample(wo, [u, v]))?;
-        let pdf = self.pdf(wo, wi);
-        let sample = BsdfSample { wi, weight: self.evaluate(wo, wi) / pdf, density: Density::Smooth(pdf) };
-        (pdf > 0.0).then_some(sample)
-    }
-
-    /// Scattering function times cos θi [1/sr].
-    #[inline]
-    pub(super) fn evaluate(&self, wo: Vec3, wi: Vec3) -> Vec3 {
-        let (true, Some(surface), Some(m)) = (self.strength > 0.0, &self.surface, half_vector(wo, wi)) else {
-            return Vec3::ZERO;
-        };
-        VARNISH.at(wo.dot(m)) * (self.strength * surface.reflection(wo, wi, m))
-    }
-
-    /// Density of `wi` [1/sr].
-    #[inline]
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        match (&self.surface, half_vector(wo, wi)) {
-            (Some(surface), Some(m)) => surface.reflection_pdf(wo, m),
-            _ => 0.0,
+    pub(super) fn propose(&self, wo: Vec3, [u, v, _]: [f32; 3]) -> Option<Proposal> {
+        match &self.surface {
+            Some(surface) => mirrored(wo, surface.sample(wo, [u, v])).map(Proposal::Spread),
+            None => Some(Proposal::single(mirror(wo), self.strength * VARNISH.at(wo.z))),
         }
+    }
+
+    #[inline]
+    pub(super) fn respond(&self, wo: Vec3, wi: Vec3) -> Response {
+        let (true, Some(surface), Some(m)) = (self.strength > 0.0, &self.surface, half_vector(wo, wi)) else {
+            return Response::default();
+        };
+        let (lobe, pdf) = surface.reflection(wo, wi, m);
+        Response { value: VARNISH.at(wo.dot(m)) * (self.strength * lobe), pdf }
     }
 }

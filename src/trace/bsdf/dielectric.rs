@@ -7,7 +7,7 @@
 use super::fresnel::{refract, refract_at};
 use super::ggx::{Ggx, half_vector, mirrored};
 use super::refraction::reflection_chance;
-use super::{BsdfSample, Density, Refraction};
+use super::{Proposal, Refraction, Response};
 use glam::Vec3;
 
 /// Relative difference of the indices below which there is no interface: it would reflect 10⁻⁷, and spread what
@@ -42,52 +42,39 @@ impl Dielectric {
     }
 
     #[inline]
-    pub(super) fn sample(&self, wo: Vec3, [u, v, u_choice]: [f32; 3]) -> Option<BsdfSample> {
+    pub(super) fn propose(&self, wo: Vec3, [u, v, u_choice]: [f32; 3]) -> Option<Proposal> {
         let Some(surface) = &self.surface else {
-            return self.smooth.sample(wo, u_choice);
+            return self.smooth.sample(wo, u_choice).map(Proposal::Single);
         };
         let m = surface.sample(wo, [u, v]);
         let refracted = refract_at(wo.dot(m), self.smooth.eta);
         let wi = if u_choice < reflection_chance(refracted.reflectance, self.smooth.tint) {
-            mirrored(wo, m)?
+            mirrored(wo, m)
         } else {
-            Some(refract(wo, m, self.smooth.eta, refracted)).filter(|wi| wi.z < 0.0)?
+            Some(refract(wo, m, self.smooth.eta, refracted)).filter(|wi| wi.z < 0.0)
         };
-        let pdf = self.pdf(wo, wi);
-        let sample = BsdfSample { wi, weight: self.evaluate(wo, wi) / pdf, density: Density::Smooth(pdf) };
-        (pdf > 0.0).then_some(sample)
+        wi.map(Proposal::Spread)
     }
 
-    /// Scattering function times |cos θi| [1/sr].
     #[inline]
-    pub(super) fn evaluate(&self, wo: Vec3, wi: Vec3) -> Vec3 {
+    pub(super) fn respond(&self, wo: Vec3, wi: Vec3) -> Response {
         let Some(surface) = &self.surface else {
-            return Vec3::ZERO;
+            return Response::default();
         };
-        let eta = self.smooth.eta;
+        let Refraction { eta, tint } = self.smooth;
         if let Some(m) = half_vector(wo, wi) {
-            return Vec3::splat(refract_at(wo.dot(m), eta).reflectance * surface.reflection(wo, wi, m));
+            let reflectance = refract_at(wo.dot(m), eta).reflectance;
+            let (lobe, pdf) = surface.reflection(wo, wi, m);
+            let pdf = reflection_chance(reflectance, tint) * pdf;
+            return Response { value: Vec3::splat(reflectance * lobe), pdf };
         }
         let Some(facet) = Facet::new(wo, wi, eta) else {
-            return Vec3::ZERO;
+            return Response::default();
         };
-        let crosses = 1.0 - refract_at(wo.dot(facet.normal), eta).reflectance;
-        let lobe = surface.visible(wo, facet.normal) * facet.jacobian * surface.seen_from_both(wo, wi);
-        self.smooth.tint * (crosses * lobe / (eta * eta))
-    }
-
-    /// Density of `wi` [1/sr].
-    #[inline]
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let Some(surface) = &self.surface else {
-            return 0.0;
-        };
-        let chance = |m: Vec3| reflection_chance(refract_at(wo.dot(m), self.smooth.eta).reflectance, self.smooth.tint);
-        if let Some(m) = half_vector(wo, wi) {
-            return chance(m) * surface.reflection_pdf(wo, m);
-        }
-        Facet::new(wo, wi, self.smooth.eta)
-            .map_or(0.0, |facet| (1.0 - chance(facet.normal)) * surface.visible(wo, facet.normal) * facet.jacobian)
+        let reflectance = refract_at(wo.dot(facet.normal), eta).reflectance;
+        let lobe = surface.visible(wo, facet.normal) * facet.jacobian;
+        let crosses = (1.0 - reflectance) * surface.seen_from_both(wo, wi) / (eta * eta);
+        Response { value: tint * (crosses * lobe), pdf: (1.0 - reflection_chance(reflectance, tint)) * lobe }
     }
 }
 

@@ -64,16 +64,12 @@ impl Ggx {
         2.0 * wo.dot(m).max(0.0) * self.density(m) / (wo.z + self.slant(wo))
     }
 
-    /// Density of the mirror direction of `wo` at a visible normal, which is `m` [1/sr].
+    /// For a surface whose facets reflect all, with `m` the half vector: scattering function times cos θi, and density
+    /// of the mirror direction at a visible normal, both [1/sr].
     #[inline]
-    pub(super) fn reflection_pdf(&self, wo: Vec3, m: Vec3) -> f32 {
-        0.5 * self.density(m) / (wo.z + self.slant(wo))
-    }
-
-    /// Scattering function times cos θi of a surface whose facets reflect all, where `m` is the half vector [1/sr].
-    #[inline]
-    pub(super) fn reflection(&self, wo: Vec3, wi: Vec3, m: Vec3) -> f32 {
-        0.5 * self.density(m) * wi.z / (wi.z * self.slant(wo) + wo.z * self.slant(wi))
+    pub(super) fn reflection(&self, wo: Vec3, wi: Vec3, m: Vec3) -> (f32, f32) {
+        let (half_density, o) = (0.5 * self.density(m), self.slant(wo));
+        (half_density * wi.z / (wi.z * o + wo.z * self.slant(wi)), half_density / (wo.z + o))
     }
 
     /// Of the normals seen from `wo`, the share that is seen from `wi` too: G2 / G1. `wi` may lie on either side.

@@ -70,6 +70,41 @@ pub(super) struct BsdfSample {
     pub(super) density: Density,
 }
 
+/// What a lobe proposes.
+#[derive(Clone, Copy, Debug)]
+enum Proposal {
+    /// A direction among many: `respond` says what it is worth.
+    Spread(Vec3),
+    /// The only direction there is, or one of two; the weight over the chance to choose it.
+    Single(BsdfSample),
+}
+
+impl Proposal {
+    /// The only direction of a lobe that takes this share of light there.
+    #[inline]
+    fn single(wi: Vec3, weight: Vec3) -> Self {
+        Self::Single(BsdfSample { wi, weight, density: Density::Delta })
+    }
+}
+
+/// Scattering function times |cos θi| and the density of `wi`, both [1/sr].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Response {
+    /// Scattering function times |cos θi| [1/sr].
+    pub(super) value: Vec3,
+    /// Density with which `sample` finds `wi` [1/sr].
+    pub(super) pdf: f32,
+}
+
+impl Response {
+    /// A sample in this direction; `None` if it carries nothing.
+    #[inline]
+    fn sample(self, wi: Vec3) -> Option<BsdfSample> {
+        let density = Density::Smooth(self.pdf);
+        (self.pdf > 0.0).then(|| BsdfSample { wi, weight: self.value / self.pdf, density })
+    }
+}
+
 impl Bsdf<'_> {
     /// A direction to go on in: two variates for it, one for the choice of lobe. `None` where the path ends, which
     /// then carries nothing.
@@ -91,7 +126,7 @@ impl Bsdf<'_> {
         match self {
             Self::None | Self::Mirror(_) | Self::Refraction(_) => Vec3::ZERO,
             Self::Lambert(lambert) => lambert.evaluate(wi),
-            Self::Standard(standard) => standard.evaluate(wo, wi),
+            Self::Standard(standard) => standard.respond(wo, wi).value,
             Self::Phong(phong) => phong.evaluate(wo, wi),
         }
     }
@@ -102,8 +137,17 @@ impl Bsdf<'_> {
         match self {
             Self::None | Self::Mirror(_) | Self::Refraction(_) => 0.0,
             Self::Lambert(lambert) => lambert.pdf(wi),
-            Self::Standard(standard) => standard.pdf(wo, wi),
+            Self::Standard(standard) => standard.respond(wo, wi).pdf,
             Self::Phong(phong) => phong.pdf(wo, wi),
+        }
+    }
+
+    /// `evaluate` and `pdf` at once, for little more than either alone.
+    #[inline]
+    pub(super) fn respond(&self, wo: Vec3, wi: Vec3) -> Response {
+        match self {
+            Self::Standard(standard) => standard.respond(wo, wi),
+            _ => Response { value: self.evaluate(wo, wi), pdf: self.pdf(wo, wi) },
         }
     }
 

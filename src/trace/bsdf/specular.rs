@@ -7,7 +7,7 @@
 use super::albedo::{AlbedoTables, RoughnessAlbedo};
 use super::fresnel::Schlick;
 use super::ggx::{Ggx, half_vector, mirror, mirrored};
-use super::{BsdfSample, Density, cosine_pdf, spread};
+use super::{Proposal, Response, cosine_pdf, spread};
 use crate::math::square_to_cosine_hemisphere;
 use glam::{Vec2, Vec3};
 
@@ -21,6 +21,15 @@ pub(super) struct Specular<'a> {
     tint: Vec3,
 }
 
+/// What a specular lobe does with light of one cosine.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    /// Reflected over arriving light.
+    pub(super) albedo: Vec3,
+    /// Share that meets a second facet.
+    missing: f32,
+}
+
 impl<'a> Specular<'a> {
     pub(super) fn new(fresnel: Schlick, perceptual_roughness: f32, tables: &'a AlbedoTables) -> Self {
         let albedo = tables.at(perceptual_roughness);
@@ -29,66 +38,55 @@ impl<'a> Specular<'a> {
         Self { surface: Ggx::new(perceptual_roughness), fresnel, albedo, tint }
     }
 
-    /// Reflected over arriving light, seen at this cosine.
+    /// What the lobe does with light of this cosine, in either direction.
     #[inline]
-    pub(super) fn albedo(&self, cos: f32) -> Vec3 {
+    pub(super) fn seen(&self, cos: f32) -> Seen {
         let once = self.albedo.at(cos);
-        once.of(&self.fresnel) + self.tint * (1.0 - once.white()).max(0.0)
+        let missing = (1.0 - once.white()).max(0.0);
+        Seen { albedo: once.of(&self.fresnel) + self.tint * missing, missing }
     }
 
-    /// Its cosine-weighted mean.
+    /// The cosine-weighted mean of the albedo.
     #[inline]
     pub(super) fn average_albedo(&self) -> Vec3 {
         let once = self.albedo.average();
         once.of(&self.fresnel) + self.tint * (1.0 - once.white()).max(0.0)
     }
 
-    /// Whether the lobe is spread out.
+    /// Whether the lobe is spread out and not black.
     #[inline]
     pub(super) fn is_smooth_lobe(&self) -> bool {
-        self.surface.is_some()
+        self.surface.is_some() && self.fresnel.f90 > 0.0
     }
 
     #[inline]
-    pub(super) fn sample(&self, wo: Vec3, [u, v, u_choice]: [f32; 3]) -> Option<BsdfSample> {
+    pub(super) fn propose(&self, wo: Vec3, [u, v, u_choice]: [f32; 3], seen_o: &Seen) -> Option<Proposal> {
         let Some(surface) = &self.surface else {
-            return Some(BsdfSample { wi: mirror(wo), weight: self.fresnel.at(wo.z), density: Density::Delta });
+            return Some(Proposal::single(mirror(wo), self.fresnel.at(wo.z)));
         };
-        let wi = if u_choice < self.diffuse_chance(wo) {
-            square_to_cosine_hemisphere(Vec2::new(u, v))
-        } else {
-            mirrored(wo, surface.sample(wo, [u, v]))?
-        };
-        let pdf = self.pdf(wo, wi);
-        let sample = BsdfSample { wi, weight: self.evaluate(wo, wi) / pdf, density: Density::Smooth(pdf) };
-        (pdf > 0.0).then_some(sample)
+        if u_choice < self.chance_of_more(seen_o) {
+            return Some(Proposal::Spread(square_to_cosine_hemisphere(Vec2::new(u, v))));
+        }
+        mirrored(wo, surface.sample(wo, [u, v])).map(Proposal::Spread)
     }
 
-    /// Scattering function times cos θi [1/sr].
     #[inline]
-    pub(super) fn evaluate(&self, wo: Vec3, wi: Vec3) -> Vec3 {
+    pub(super) fn respond(&self, [wo, wi]: [Vec3; 2], [seen_o, seen_i]: [&Seen; 2]) -> Response {
         let (Some(surface), Some(m)) = (&self.surface, half_vector(wo, wi)) else {
-            return Vec3::ZERO;
+            return Response::default();
         };
-        let once = self.fresnel.at(wo.dot(m)) * surface.reflection(wo, wi, m);
-        once + self.tint * (self.albedo.compensation(wo.z, wi.z) * wi.z)
-    }
-
-    /// Density of `wi` [1/sr].
-    #[inline]
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let (Some(surface), Some(m)) = (&self.surface, half_vector(wo, wi)) else {
-            return 0.0;
-        };
-        spread(surface.reflection_pdf(wo, m), cosine_pdf(wi), self.diffuse_chance(wo))
+        let (lobe, pdf) = surface.reflection(wo, wi, m);
+        let more = self.albedo.compensation([seen_o.missing, seen_i.missing]) * wi.z;
+        Response {
+            value: self.fresnel.at(wo.dot(m)) * lobe + self.tint * more,
+            pdf: spread(pdf, cosine_pdf(wi), self.chance_of_more(seen_o)),
+        }
     }
 
     /// The chance to sample what is reflected more than once.
     #[inline]
-    fn diffuse_chance(&self, wo: Vec3) -> f32 {
-        let once = self.albedo.at(wo.z);
-        let more = self.tint.element_sum() * (1.0 - once.white()).max(0.0);
-        let all = once.of(&self.fresnel).element_sum() + more;
+    fn chance_of_more(&self, seen: &Seen) -> f32 {
+        let (more, all) = (self.tint.element_sum() * seen.missing, seen.albedo.element_sum());
         if all > 0.0 { more / all } else { 0.0 }
     }
 }

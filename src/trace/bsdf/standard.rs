@@ -4,15 +4,17 @@
 //! base and t parts of glass, a clear coat over all (`pbr_functions.wgsl`, `calculate_F0`, `calculate_diffuse_color`).
 //! Unlike on screen, the diffuse base gets only what the coat leaves, the same both ways: times (1 − E(μo))
 //! (1 − E(μi)) / (1 − E_average) per channel (Kelemen and Szirmay-Kalos 2001). So no albedo is above 1.
+//!
+//! The diffuser knows one index on both sides. Beside bent glass, on one surface, it does not follow the index squared.
 
 use super::albedo::AlbedoTables;
 use super::clearcoat::Clearcoat;
 use super::dielectric::Dielectric;
 use super::diffuse_transmission::DiffuseTransmission;
 use super::fresnel::Schlick;
-use super::specular::Specular;
+use super::specular::{Seen, Specular};
 use super::thin::Pane;
-use super::{BsdfSample, Density, Lambert};
+use super::{BsdfSample, Lambert, Proposal, Response};
 use crate::scene::Interior;
 use glam::{Vec2, Vec3};
 
@@ -102,73 +104,50 @@ impl<'a> Standard<'a> {
     #[inline]
     pub(in crate::trace) fn straight(&self, cos: f32) -> Vec3 {
         match &self.glass {
-            Glass::Pane(pane) if self.clear > 0.0 => self.clear * self.coat.leaves(cos, cos) * pane.straight(cos),
+            Glass::Pane(pane) if self.clear > 0.0 => self.clear * (1.0 - self.coat.albedo(cos)) * pane.straight(cos),
             _ => Vec3::ZERO,
         }
     }
 
     #[inline]
-    pub(super) fn sample(&self, wo: Vec3, u: [f32; 3]) -> Option<BsdfSample> {
-        if wo.z <= 0.0 {
-            return None;
-        }
-        let chances = self.chances(wo)?;
-        let (lobe, chance, u_choice) = chances.choose(u[2]);
-        let inner = [u[0], u[1], u_choice];
-        let sample = match lobe {
-            Lobe::Coat => self.coat.sample(wo, inner)?,
-            Lobe::Specular => self.specular.sample(wo, inner)?,
-            Lobe::Diffuse => self.diffuse.sample(Vec2::new(u[0], u[1])),
-            Lobe::Diffuser => self.diffuser.sample(Vec2::new(u[0], u[1])),
-            Lobe::Glass => self.glass.sample(wo, inner)?,
+    pub(super) fn sample(&self, wo: Vec3, [u, v, u_choice]: [f32; 3]) -> Option<BsdfSample> {
+        let view = View::new(self, wo)?;
+        let (lobe, chance, u_choice) = view.chances.choose(u_choice);
+        let u = [u, v, u_choice];
+        let proposal = match lobe {
+            Lobe::Coat => self.coat.propose(wo, u)?,
+            Lobe::Specular => self.specular.propose(wo, u, &view.specular)?,
+            Lobe::Diffuse => Proposal::Spread(self.diffuse.sample(Vec2::new(u[0], u[1])).wi),
+            Lobe::Diffuser => Proposal::Spread(self.diffuser.sample(Vec2::new(u[0], u[1])).wi),
+            Lobe::Glass => self.glass.propose(wo, u)?,
         };
-        if let Density::Delta = sample.density {
-            let share = self.share(lobe, wo, sample.wi) / chance;
-            return Some(BsdfSample { weight: sample.weight * share, ..sample });
+        match proposal {
+            Proposal::Spread(wi) => self.respond_seen(&view, wi).sample(wi),
+            Proposal::Single(sample) => {
+                let share = self.share(lobe, &view, sample.wi) / chance;
+                Some(BsdfSample { weight: sample.weight * share, ..sample })
+            }
         }
-        let pdf = self.lobes_pdf(&chances, wo, sample.wi);
-        let weight = self.evaluate(wo, sample.wi) / pdf;
-        (pdf > 0.0).then_some(BsdfSample { weight, density: Density::Smooth(pdf), ..sample })
     }
 
-    /// Scattering function times |cos θi| [1/sr].
     #[inline]
-    pub(super) fn evaluate(&self, wo: Vec3, wi: Vec3) -> Vec3 {
-        if wo.z <= 0.0 || wi.z == 0.0 {
-            return Vec3::ZERO;
-        }
-        let mut below = Vec3::ZERO;
-        if self.clear < 1.0 {
-            let base = if wi.z > 0.0 { self.diffuse.evaluate(wi) } else { self.diffuser.evaluate(wi) };
-            let coated = self.specular.evaluate(wo, wi) + base * self.left(wo.z, wi.z.abs());
-            below += (1.0 - self.clear) * coated;
-        }
-        if self.clear > 0.0 {
-            below += self.clear * self.glass.evaluate(wo, wi);
-        }
-        self.coat.evaluate(wo, wi) + self.coat.leaves(wo.z, wi.z.abs()) * below
-    }
-
-    /// Density of `wi` [1/sr].
-    #[inline]
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if wo.z <= 0.0 {
-            return 0.0;
-        }
-        self.chances(wo).map_or(0.0, |chances| self.lobes_pdf(&chances, wo, wi))
+    pub(super) fn respond(&self, wo: Vec3, wi: Vec3) -> Response {
+        View::new(self, wo).map_or(Response::default(), |view| self.respond_seen(&view, wi))
     }
 
     /// An estimate of the light that is scattered over that which arrives, as energy.
     #[inline]
     pub(super) fn albedo(&self, wo: Vec3) -> Vec3 {
-        let [coat, specular, diffuse, diffuser, glass] = self.albedos(wo);
+        let [coat, specular, diffuse, diffuser, glass] =
+            self.albedos(wo, self.coat.albedo(wo.z), &self.specular.seen(wo.z));
         coat + specular + diffuse + diffuser + glass
     }
 
     /// Whether there is a lobe that is spread out.
     #[inline]
     pub(super) fn has_smooth(&self) -> bool {
-        self.coat.is_smooth_lobe() || self.has_smooth_below()
+        let opaque = self.diffuse.albedo != Vec3::ZERO || self.specular.is_smooth_lobe();
+        self.coat.is_smooth_lobe() || self.transmits() || self.clear < 1.0 && opaque
     }
 
     /// Whether light from the far side is spread out.
@@ -178,22 +157,38 @@ impl<'a> Standard<'a> {
     }
 
     #[inline]
-    fn has_smooth_below(&self) -> bool {
-        let specular = self.specular.is_smooth_lobe() && self.specular.albedo(1.0) != Vec3::ZERO;
-        self.transmits() || self.clear < 1.0 && (self.diffuse.albedo != Vec3::ZERO || specular)
-    }
-
-    /// What the specular lobe leaves for the base.
-    #[inline]
-    fn left(&self, cos_o: f32, cos_i: f32) -> Vec3 {
-        let left = |cos| (Vec3::ONE - self.specular.albedo(cos)).max(Vec3::ZERO);
-        left(cos_o) * left(cos_i) / self.average_left
+    fn respond_seen(&self, view: &View, wi: Vec3) -> Response {
+        let (wo, chances, cos) = (view.wo, &view.chances, wi.z.abs());
+        let coat_i = self.coat.albedo(cos);
+        let mut pdf = chances.diffuse * self.diffuse.pdf(wi) + chances.diffuser * self.diffuser.pdf(wi);
+        let mut value = Vec3::ZERO;
+        if self.clear < 1.0 {
+            let seen_i = self.specular.seen(cos);
+            let specular = self.specular.respond([wo, wi], [&view.specular, &seen_i]);
+            let base = if wi.z > 0.0 { self.diffuse.evaluate(wi) } else { self.diffuser.evaluate(wi) };
+            let left = |seen: &Seen| (Vec3::ONE - seen.albedo).max(Vec3::ZERO);
+            let diffuse = base * left(&view.specular) * left(&seen_i) / self.average_left;
+            value += (1.0 - self.clear) * (specular.value + diffuse);
+            pdf += chances.specular * specular.pdf;
+        }
+        if self.clear > 0.0 {
+            let glass = self.glass.respond(wo, wi);
+            value += self.clear * glass.value;
+            pdf += chances.glass * glass.pdf;
+        }
+        value *= Clearcoat::leaves(view.coat, coat_i);
+        if chances.coat > 0.0 {
+            let coat = self.coat.respond(wo, wi);
+            value += coat.value;
+            pdf += chances.coat * coat.pdf;
+        }
+        Response { value, pdf }
     }
 
     /// The part of the surface that a lobe without spread belongs to, less what the coat takes.
     #[inline]
-    fn share(&self, lobe: Lobe, wo: Vec3, wi: Vec3) -> f32 {
-        let leaves = self.coat.leaves(wo.z, wi.z.abs());
+    fn share(&self, lobe: Lobe, view: &View, wi: Vec3) -> f32 {
+        let leaves = Clearcoat::leaves(view.coat, self.coat.albedo(wi.z.abs()));
         match lobe {
             Lobe::Coat => 1.0,
             Lobe::Specular | Lobe::Diffuse | Lobe::Diffuser => leaves * (1.0 - self.clear),
@@ -203,70 +198,52 @@ impl<'a> Standard<'a> {
 
     /// About what each lobe scatters.
     #[inline]
-    fn albedos(&self, wo: Vec3) -> [Vec3; 5] {
-        let coat = self.coat.albedo(wo.z);
+    fn albedos(&self, wo: Vec3, coat: f32, specular: &Seen) -> [Vec3; 5] {
         let leaves = 1.0 - coat;
         let (opaque, clear) = (leaves * (1.0 - self.clear), leaves * self.clear);
-        let specular = self.specular.albedo(wo.z);
-        let left = (Vec3::ONE - specular).max(Vec3::ZERO) * opaque;
+        let left = (Vec3::ONE - specular.albedo).max(Vec3::ZERO) * opaque;
         let glass = if clear > 0.0 { clear * self.glass.albedo(wo) } else { Vec3::ZERO };
-        [Vec3::splat(coat), opaque * specular, left * self.diffuse.albedo, left * self.diffuser.albedo, glass]
+        [Vec3::splat(coat), opaque * specular.albedo, left * self.diffuse.albedo, left * self.diffuser.albedo, glass]
     }
+}
 
+/// What depends on `wo` alone.
+#[derive(Clone, Copy, Debug)]
+struct View {
+    wo: Vec3,
+    /// Albedo of the clear coat.
+    coat: f32,
+    specular: Seen,
+    chances: Chances,
+}
+
+impl View {
     /// `None` if nothing is scattered.
     #[inline]
-    fn chances(&self, wo: Vec3) -> Option<Chances> {
-        let [coat, specular, diffuse, diffuser, glass] = self.albedos(wo).map(Vec3::element_sum);
-        let sum = coat + specular + diffuse + diffuser + glass;
-        let of = |albedo: f32| albedo / sum;
-        let chances = Chances {
-            coat: of(coat),
-            specular: of(specular),
-            diffuse: of(diffuse),
-            diffuser: of(diffuser),
-            glass: of(glass),
-        };
-        (sum > 0.0).then_some(chances)
-    }
-
-    #[inline]
-    fn lobes_pdf(&self, chances: &Chances, wo: Vec3, wi: Vec3) -> f32 {
-        let mut pdf = chances.diffuse * self.diffuse.pdf(wi) + chances.diffuser * self.diffuser.pdf(wi);
-        if chances.coat > 0.0 {
-            pdf += chances.coat * self.coat.pdf(wo, wi);
+    fn new(standard: &Standard, wo: Vec3) -> Option<Self> {
+        if wo.z <= 0.0 {
+            return None;
         }
-        if chances.specular > 0.0 {
-            pdf += chances.specular * self.specular.pdf(wo, wi);
-        }
-        if chances.glass > 0.0 {
-            pdf += chances.glass * self.glass.pdf(wo, wi);
-        }
-        pdf
+        let (coat, specular) = (standard.coat.albedo(wo.z), standard.specular.seen(wo.z));
+        let chances = Chances::new(standard.albedos(wo, coat, &specular))?;
+        Some(Self { wo, coat, specular, chances })
     }
 }
 
 impl Glass<'_> {
     #[inline]
-    fn sample(&self, wo: Vec3, u: [f32; 3]) -> Option<BsdfSample> {
+    fn propose(&self, wo: Vec3, u: [f32; 3]) -> Option<Proposal> {
         match self {
-            Self::Pane(pane) => pane.sample(wo, u),
-            Self::Body(body) => body.sample(wo, u),
+            Self::Pane(pane) => pane.propose(wo, u),
+            Self::Body(body) => body.propose(wo, u),
         }
     }
 
     #[inline]
-    fn evaluate(&self, wo: Vec3, wi: Vec3) -> Vec3 {
+    fn respond(&self, wo: Vec3, wi: Vec3) -> Response {
         match self {
-            Self::Pane(pane) => pane.evaluate(wo, wi),
-            Self::Body(body) => body.evaluate(wo, wi),
-        }
-    }
-
-    #[inline]
-    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        match self {
-            Self::Pane(pane) => pane.pdf(wo, wi),
-            Self::Body(body) => body.pdf(wo, wi),
+            Self::Pane(pane) => pane.respond(wo, wi),
+            Self::Body(body) => body.respond(wo, wi),
         }
     }
 
@@ -288,6 +265,21 @@ impl Glass<'_> {
 }
 
 impl Chances {
+    /// In proportion to albedos; `None` if all are 0.
+    #[inline]
+    fn new(albedos: [Vec3; 5]) -> Option<Self> {
+        let [coat, specular, diffuse, diffuser, glass] = albedos.map(Vec3::element_sum);
+        let sum = coat + specular + diffuse + diffuser + glass;
+        let of = |albedo: f32| albedo / sum;
+        (sum > 0.0).then(|| Self {
+            coat: of(coat),
+            specular: of(specular),
+            diffuse: of(diffuse),
+            diffuser: of(diffuser),
+            glass: of(glass),
+        })
+    }
+
     /// A lobe, its chance, and what is left of the variate, uniform again.
     #[inline]
     fn choose(&self, u: f32) -> (Lobe, f32, f32) {

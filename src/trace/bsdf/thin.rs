@@ -9,7 +9,7 @@ use super::albedo::{AlbedoTables, RoughnessAlbedo};
 use super::fresnel::Schlick;
 use super::ggx::{Ggx, half_vector, mirror, mirrored};
 use super::refraction::reflection_chance;
-use super::{BsdfSample, Density, cosine_pdf, spread};
+use super::{Proposal, Response, cosine_pdf, spread};
 use crate::math::square_to_cosine_hemisphere;
 use glam::{Vec2, Vec3};
 
@@ -58,9 +58,9 @@ impl<'a> Pane<'a> {
     }
 
     #[inline]
-    pub(super) fn sample(&self, wo: Vec3, [u, v, u_choice]: [f32; 3]) -> Option<BsdfSample> {
+    pub(super) fn propose(&self, wo: Vec3, [u, v, u_choice]: [f32; 3]) -> Option<Proposal> {
         let Some(surface) = &self.surface else {
-            return Some(BsdfSample { wi: mirror(wo), weight: self.fresnel.at(wo.z), density: Density::Delta });
+            return Some(Proposal::single(mirror(wo), self.fresnel.at(wo.z)));
         };
         let more = self.albedo.missing(wo.z);
         let (wi, chance, u_side) = if u_choice < more {
@@ -71,40 +71,28 @@ impl<'a> Pane<'a> {
             let chance = self.near_chance(self.fresnel.at(wo.dot(m)));
             (mirrored(wo, m)?, chance, (u_choice - more) / (1.0 - more))
         };
-        let wi = if u_side < chance { wi } else { wi * FLIP };
-        let pdf = self.pdf(wo, wi);
-        let sample = BsdfSample { wi, weight: self.evaluate(wo, wi) / pdf, density: Density::Smooth(pdf) };
-        (pdf > 0.0).then_some(sample)
+        Some(Proposal::Spread(if u_side < chance { wi } else { wi * FLIP }))
     }
 
-    /// Scattering function times |cos θi| [1/sr].
     #[inline]
-    pub(super) fn evaluate(&self, wo: Vec3, wi: Vec3) -> Vec3 {
-        let near = if wi.z < 0.0 { wi * FLIP } else { wi };
+    pub(super) fn respond(&self, wo: Vec3, wi: Vec3) -> Response {
+        let crosses = wi.z < 0.0;
+        let near = if crosses { wi * FLIP } else { wi };
         let (Some(surface), Some(m)) = (&self.surface, half_vector(wo, near)) else {
-            return Vec3::ZERO;
+            return Response::default();
         };
-        let once = surface.reflection(wo, near, m);
-        let more = self.albedo.compensation(wo.z, near.z) * near.z;
+        let missing = [wo.z, near.z].map(|cos| self.albedo.missing(cos));
+        let (lobe, pdf) = surface.reflection(wo, near, m);
+        let more = self.albedo.compensation(missing) * near.z;
         let (reflectance, average) = (self.fresnel.at(wo.dot(m)), self.fresnel.average());
-        if wi.z < 0.0 {
-            self.tint * ((Vec3::ONE - reflectance) * once + (Vec3::ONE - average) * more)
+        let chances = [reflectance, average].map(|reflectance| self.near_chance(reflectance));
+        let (value, [once, again]) = if crosses {
+            let value = (Vec3::ONE - reflectance) * lobe + (Vec3::ONE - average) * more;
+            (self.tint * value, chances.map(|chance| 1.0 - chance))
         } else {
-            reflectance * once + average * more
-        }
-    }
-
-    /// Density of `wi` [1/sr].
-    #[inline]
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let near = if wi.z < 0.0 { wi * FLIP } else { wi };
-        let (Some(surface), Some(m)) = (&self.surface, half_vector(wo, near)) else {
-            return 0.0;
+            (reflectance * lobe + average * more, chances)
         };
-        let side = |chance: f32| if wi.z < 0.0 { 1.0 - chance } else { chance };
-        let once = side(self.near_chance(self.fresnel.at(wo.dot(m)))) * surface.reflection_pdf(wo, m);
-        let more = side(self.near_chance(self.fresnel.average())) * cosine_pdf(near);
-        spread(once, more, self.albedo.missing(wo.z))
+        Response { value, pdf: spread(once * pdf, again * cosine_pdf(near), missing[0]) }
     }
 
     /// The chance to stay on the near side.

@@ -1,12 +1,9 @@
 //! Single directions and Fresnel's laws, in closed form.
 
-use super::super::clearcoat::Clearcoat;
-use super::super::dielectric::Dielectric;
 use super::super::fresnel::{Schlick, refract_at};
-use super::super::specular::Specular;
 use super::super::standard::{Standard, StandardParameters};
 use super::super::{Bsdf, Density, Mirror, Refraction};
-use super::subject::{ANGLES, TABLES, VOLUME, WHITE, outgoing, schlick};
+use super::subject::{ANGLES, TABLES, VOLUME, WHITE, clearcoat, dielectric, outgoing, schlick, specular};
 use glam::Vec3;
 
 const LEVEL: Vec3 = Vec3::new(-1.0, -1.0, 1.0);
@@ -125,9 +122,9 @@ fn smooth_coats_and_panes() {
     let fresnel = schlick([0.9, 0.6, 0.3]);
     for degrees in ANGLES {
         let wo = outgoing(degrees);
-        let metal = Specular::new(fresnel, 0.0, &TABLES).sample(wo, [0.5; 3]).expect("reflects");
+        let metal = (specular(0.0, fresnel).sample)(wo, [0.5; 3]).expect("reflects");
         assert_eq!((metal.wi, metal.weight, metal.density), (wo * LEVEL, fresnel.at(wo.z), Density::Delta));
-        let coat = Clearcoat::new(0.5, 0.01, &TABLES).sample(wo, [0.5; 3]).expect("reflects");
+        let coat = (clearcoat(0.01, 0.5).sample)(wo, [0.5; 3]).expect("reflects");
         let varnish = Schlick { f0: Vec3::splat(0.04), f90: 1.0 }.at(wo.z);
         assert_eq!((coat.wi, coat.weight, coat.density), (wo * LEVEL, 0.5 * varnish, Density::Delta));
 
@@ -161,8 +158,7 @@ fn smooth_coats_and_panes() {
 #[test]
 fn matched_indices_do_not_scatter() {
     let wo = outgoing(80.0);
-    let lobe = Dielectric::new(1.0, Vec3::ONE, 1.0);
-    let sample = lobe.sample(wo, [0.4, 0.5, 0.6]).expect("crosses");
+    let sample = (dielectric(1.0, 1.0, Vec3::ONE).sample)(wo, [0.4, 0.5, 0.6]).expect("crosses");
     assert!((sample.wi + wo).length() < 1e-6 && (sample.weight - Vec3::ONE).length() < 1e-6);
     assert_eq!(sample.density, Density::Delta);
 }

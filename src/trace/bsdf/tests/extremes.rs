@@ -62,10 +62,12 @@ fn hold(bsdf: &Bsdf, random: &mut Random, what: &dyn std::fmt::Debug) {
         let (value, pdf) = (bsdf.evaluate(wo, wi), bsdf.pdf(wo, wi));
         let sound = value.is_finite() && value.min_element() >= 0.0 && pdf.is_finite() && pdf >= 0.0;
         assert!(sound, "{what:?}: {value} with {pdf} from {wo} to {wi}");
-        let whole = [bsdf.albedo(wo), bsdf.straight(wo.z)];
-        for albedo in whole {
-            assert!(albedo.min_element() >= 0.0 && albedo.max_element() < 1.01, "{what:?} from {wo}: {albedo}");
-        }
+        let together = bsdf.respond(wo, wi);
+        assert_eq!((together.value, together.pdf), (value, pdf), "{what:?} from {wo} to {wi}");
+        let hidden = !bsdf.has_smooth() || wi.z < 0.0 && !bsdf.transmits();
+        assert!(!hidden || value == Vec3::ZERO, "{what:?} from {wo} to {wi}: {value}");
+        let albedo = bsdf.albedo(wo) + bsdf.straight(wo.z);
+        assert!(albedo.min_element() >= 0.0 && albedo.max_element() < 1.001, "{what:?} from {wo}: {albedo}");
     }
 }
 

@@ -1,13 +1,11 @@
 //! `docs/albedo.md`: how much each lobe scatters, as measured. To write it anew after a change that is meant:
 //! `cargo test --no-default-features --features bake --lib write_the_page -- --ignored`.
 
-use super::super::clearcoat::Clearcoat;
-use super::super::dielectric::Dielectric;
 use super::super::ggx::{Ggx, half_vector};
 use super::super::standard::{Standard, StandardParameters};
 use super::super::{Bsdf, Phong};
 use super::furnace::share;
-use super::subject::{Subject, TABLES, WHITE, dielectric, outgoing, phong, schlick, specular, standard};
+use super::subject::{Subject, TABLES, WHITE, clearcoat, dielectric, outgoing, phong, schlick, specular, standard};
 use glam::Vec3;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -71,27 +69,10 @@ fn with_straight(parameters: StandardParameters) -> impl Fn(f32) -> Subject {
 fn once(roughness: f32) -> Subject {
     let mut subject = specular(roughness, schlick([1.0; 3]));
     if let Some(ggx) = Ggx::new(roughness) {
-        subject.evaluate =
-            Box::new(move |wo, wi| half_vector(wo, wi).map_or(Vec3::ZERO, |m| Vec3::splat(ggx.reflection(wo, wi, m))));
+        subject.evaluate = Box::new(move |wo, wi| {
+            half_vector(wo, wi).map_or(Vec3::ZERO, |m| Vec3::splat(ggx.reflection(wo, wi, m).0))
+        });
     }
-    subject
-}
-
-fn glass(eta: f32) -> impl Fn(f32) -> Subject {
-    move |roughness| {
-        let lobe = Dielectric::new(eta, Vec3::ONE, roughness);
-        let mut subject = dielectric(roughness, eta);
-        subject.sample = Box::new(move |wo, u| lobe.sample(wo, u));
-        subject.evaluate = Box::new(move |wo, wi| lobe.evaluate(wo, wi));
-        subject
-    }
-}
-
-fn varnish(roughness: f32) -> Subject {
-    let lobe = Clearcoat::new(1.0, roughness, &TABLES);
-    let mut subject = super::subject::clearcoat(roughness);
-    subject.sample = Box::new(move |wo, u| lobe.sample(wo, u));
-    subject.evaluate = Box::new(move |wo, wi| lobe.evaluate(wo, wi));
     subject
 }
 
@@ -121,7 +102,9 @@ fn tables() -> Vec<Table> {
             "A microfacet coat of F0 = 0.04 over a white base that gets what the coat leaves (`standard.rs`).",
             rough(WHITE),
         ),
-        over_roughness("Clear coat by itself", "F0 = 0.04, strength 1 (`clearcoat.rs`).", varnish),
+        over_roughness("Clear coat by itself", "F0 = 0.04, strength 1 (`clearcoat.rs`).", |roughness| {
+            clearcoat(roughness, 1.0)
+        }),
         over_roughness(
             "Clear coat over white",
             "Over a white diffuse base. What is missing was reflected down again by the coat and is not followed.",
@@ -136,9 +119,11 @@ fn tables() -> Vec<Table> {
             "Glass from outside",
             "Index 1.5, both sides together (`dielectric.rs`). There is no compensation: what is missing has met a \
              second facet and is lost.",
-            glass(1.5),
+            |roughness| dielectric(roughness, 1.5, Vec3::ONE),
         ),
-        over_roughness("Glass from inside", "The same interface from its dense side.", glass(1.0 / 1.5)),
+        over_roughness("Glass from inside", "The same interface from its dense side.", |roughness| {
+            dielectric(roughness, 1.0 / 1.5, Vec3::ONE)
+        }),
         Table {
             heading: "Phong's glossy lobe",
             text: "Largest albedo 1 (`phong.rs`). What is missing would have gone below the surface.",

@@ -4,7 +4,7 @@
 use super::super::fresnel::Schlick;
 use super::super::ggx::{Ggx, half_vector};
 use super::super::standard::StandardParameters;
-use super::subject::{Subject, WHITE, dielectric, everything, lambert, mixes, schlick, specular, standard};
+use super::subject::{GREEN, Subject, WHITE, dielectric, everything, lambert, mixes, schlick, specular, standard};
 use crate::math::testing::Random;
 use glam::Vec3;
 
@@ -52,11 +52,11 @@ fn the_way_back_scatters_alike() {
 fn refraction_goes_both_ways_by_the_index_squared() {
     for roughness in [0.2, 0.5, 1.0] {
         for eta in [1.5, 1.0 / 1.5, 2.4] {
-            let (glass, turned) = (dielectric(roughness, eta), dielectric(roughness, 1.0 / eta));
+            let (glass, turned) = (dielectric(roughness, eta, GREEN), dielectric(roughness, 1.0 / eta, GREEN));
             let off = worst(&glass, &turned);
             assert!(off < 1e-2, "{}: {off}", glass.name);
             // Planted: radiance that does not follow the index; the index not turned; a tint of one side alone.
-            let mut faulty = dielectric(roughness, eta);
+            let mut faulty = dielectric(roughness, eta, GREEN);
             faulty.eta = 1.0;
             assert!(worst(&faulty, &turned) > 0.1, "{}", faulty.name);
             assert!(worst(&glass, &glass) > 0.1, "{}", glass.name);
@@ -80,13 +80,13 @@ fn one_sided_faults_are_rejected() {
     let metal = schlick([0.9, 0.6, 0.3]);
     let mut subject = specular(0.7, metal);
     subject.evaluate = Box::new(move |wo, wi| {
-        half_vector(wo, wi).map_or(Vec3::ZERO, |m| metal.at(wo.dot(m)) * ggx.reflection_pdf(wo, m))
+        half_vector(wo, wi).map_or(Vec3::ZERO, |m| metal.at(wo.dot(m)) * ggx.reflection(wo, wi, m).1)
     });
     assert!(worst(&subject, &subject) > 0.1);
     let table = super::subject::TABLES.at(0.7);
     subject.evaluate = Box::new(move |wo, wi| {
         let scale = Vec3::ONE + metal.f0 * (1.0 / table.at(wo.z).white() - 1.0);
-        half_vector(wo, wi).map_or(Vec3::ZERO, |m| metal.at(wo.dot(m)) * scale * ggx.reflection(wo, wi, m))
+        half_vector(wo, wi).map_or(Vec3::ZERO, |m| metal.at(wo.dot(m)) * scale * ggx.reflection(wo, wi, m).0)
     });
     assert!(worst(&subject, &subject) > 0.01);
     let one_sided = Schlick::new(Vec3::splat(0.04));

@@ -8,7 +8,7 @@ use super::super::fresnel::Schlick;
 use super::super::specular::Specular;
 use super::super::standard::{Standard, StandardParameters};
 use super::super::thin::Pane;
-use super::super::{Bsdf, BsdfSample, Lambert, Phong};
+use super::super::{Bsdf, BsdfSample, Lambert, Phong, Proposal, Response};
 use super::density::COLUMNS;
 use crate::scene::Interior;
 use glam::{Vec2, Vec3};
@@ -47,9 +47,31 @@ pub(super) fn outgoing(degrees: f32) -> Vec3 {
     Vec3::new(sin * x, sin * y, cos)
 }
 
+/// The colour of glass.
+pub(super) const GREEN: Vec3 = Vec3::new(0.6, 1.0, 0.4);
+
 /// A coloured lobe whose F0 and F90 are those of Bevy.
 pub(super) fn schlick(f0: [f32; 3]) -> Schlick {
     Schlick::new(Vec3::from(f0))
+}
+
+/// A lobe by itself, in functions.
+fn lobe(
+    name: String,
+    propose: impl Fn(Vec3, [f32; 3]) -> Option<Proposal> + 'static,
+    respond: impl Fn(Vec3, Vec3) -> Response + Copy + 'static,
+    eta: f32,
+) -> Subject {
+    Subject {
+        name,
+        sample: Box::new(move |wo, u| match propose(wo, u)? {
+            Proposal::Spread(wi) => respond(wo, wi).sample(wi),
+            Proposal::Single(sample) => Some(sample),
+        }),
+        evaluate: Box::new(move |wo, wi| respond(wo, wi).value),
+        pdf: Box::new(move |wo, wi| respond(wo, wi).pdf),
+        eta,
+    }
 }
 
 macro_rules! subject {
@@ -81,21 +103,27 @@ pub(super) fn diffuser() -> Subject {
 }
 
 pub(super) fn specular(roughness: f32, fresnel: Schlick) -> Subject {
-    subject!(format!("specular {roughness}"), Specular::new(fresnel, roughness, &TABLES), 1.0)
+    let coat = Specular::new(fresnel, roughness, &TABLES);
+    let respond = move |wo: Vec3, wi: Vec3| coat.respond([wo, wi], [wo, wi].map(|w| coat.seen(w.z.abs())).each_ref());
+    lobe(format!("specular {roughness}"), move |wo, u| coat.propose(wo, u, &coat.seen(wo.z)), respond, 1.0)
 }
 
-pub(super) fn clearcoat(roughness: f32) -> Subject {
-    subject!(format!("coat {roughness}"), Clearcoat::new(0.7, roughness, &TABLES), 1.0)
+pub(super) fn clearcoat(roughness: f32, strength: f32) -> Subject {
+    let coat = Clearcoat::new(strength, roughness, &TABLES);
+    let respond = move |wo: Vec3, wi: Vec3| coat.respond(wo, wi);
+    lobe(format!("coat {roughness}"), move |wo, u| coat.propose(wo, u), respond, 1.0)
 }
 
-pub(super) fn dielectric(roughness: f32, eta: f32) -> Subject {
-    let tint = Vec3::new(1.0, 0.9, 0.4);
-    subject!(format!("glass {roughness}, {eta}"), Dielectric::new(eta, tint, roughness), eta)
+pub(super) fn dielectric(roughness: f32, eta: f32, tint: Vec3) -> Subject {
+    let glass = Dielectric::new(eta, tint, roughness);
+    let respond = move |wo: Vec3, wi: Vec3| glass.respond(wo, wi);
+    lobe(format!("glass {roughness}, {eta}"), move |wo, u| glass.propose(wo, u), respond, eta)
 }
 
 pub(super) fn pane(roughness: f32) -> Subject {
-    let lobe = Pane::new(schlick([0.04; 3]), Vec3::new(1.0, 0.8, 0.3), roughness, &TABLES);
-    subject!(format!("pane {roughness}"), lobe, 1.0)
+    let pane = Pane::new(schlick([0.04; 3]), Vec3::new(1.0, 0.8, 0.3), roughness, &TABLES);
+    let respond = move |wo: Vec3, wi: Vec3| pane.respond(wo, wi);
+    lobe(format!("pane {roughness}"), move |wo, u| pane.propose(wo, u), respond, 1.0)
 }
 
 pub(super) fn phong(exponent: f32) -> Subject {
@@ -145,9 +173,9 @@ pub(super) fn mixes() -> Vec<(&'static str, StandardParameters)> {
 pub(super) fn everything() -> Vec<Subject> {
     let mut all = vec![lambert(), diffuser()];
     all.extend([0.1, 0.3, 0.6, 1.0].map(|roughness| specular(roughness, schlick([0.9, 0.6, 0.3]))));
-    all.extend([0.15, 0.5].map(clearcoat));
+    all.extend([0.15, 0.5].map(|roughness| clearcoat(roughness, 0.7)));
     for eta in [1.5, 1.0 / 1.5, 2.4] {
-        all.extend([0.2, 0.5, 1.0].map(|roughness| dielectric(roughness, eta)));
+        all.extend([0.2, 0.5, 1.0].map(|roughness| dielectric(roughness, eta, GREEN)));
     }
     all.extend([0.2, 0.5, 1.0].map(pane));
     all.extend([0.0, 20.0, 500.0].map(phong));
