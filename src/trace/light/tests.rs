@@ -1,6 +1,11 @@
 //! Light sampling: points on sources follow the density that is claimed for them, on the sphere of directions and on
 //! the source itself; the two ways to ask for a density agree; and planted faults are rejected.
 
+mod hard;
+mod sky;
+mod sphere;
+mod tree;
+
 use super::lights::Parts;
 use super::seen::Seen;
 use super::{Emitter, EmitterShape, End, LightContext, LightSample, Lights, MetSource, SourceIndex};
@@ -257,7 +262,8 @@ fn the_choice_among_sources_follows_its_density() {
         let p = among_several(receiver, |_| 1.0);
         assert!(p.is_ok(), "{receiver}: {p:?}");
         // Planted: two sources take a little from each other, so that the total stays.
-        let probability = |index| several().chance(index, &free(receiver));
+        let (lights, ctx) = (several(), free(receiver));
+        let probability = |index| lights.chance(index, &ctx);
         let shifted = among_several(receiver, |index| match index {
             1 => 1.0 + 0.04 / probability(1),
             2 => 1.0 - 0.04 / probability(2),
