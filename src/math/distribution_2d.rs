@@ -130,7 +130,9 @@ mod tests {
             for x in 0..steps {
                 let u = (Vec2::new(x as f32, y as f32) + 0.5) / steps as f32;
                 let cell = table.sample(u, &weight);
-                assert!(cell.probability > 0.0 && cell.remapped.min_element() >= 0.0 && cell.remapped.max_element() < 1.0);
+                assert!(
+                    cell.probability > 0.0 && cell.remapped.min_element() >= 0.0 && cell.remapped.max_element() < 1.0
+                );
                 hits[(cell.place.y * size.x + cell.place.x) as usize] += 1.0 / f64::from(steps * steps);
             }
         }

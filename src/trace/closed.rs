@@ -12,12 +12,15 @@ impl Tracer {
     /// Whether none of `walks` light paths from the sources leaves the scene.
     pub(crate) fn is_closed(&self, walks: u64, seed: u64) -> bool {
         let key = combine(seed, 0x636c_6f73_6564);
-        !self.lights.is_empty() && !self.lights.has_distant() && (0..walks).all(|walk| self.stays_inside(&Sobol::new(key, walk)))
+        !self.lights.is_empty()
+            && !self.lights.has_distant()
+            && (0..walks).all(|walk| self.stays_inside(&Sobol::new(key, walk)))
     }
 
     fn stays_inside(&self, sampler: &Sobol) -> bool {
         let [u_choice, ..] = sampler.draw(Dimensions::Start);
-        let Some((mut origin, mut direction)) = self.lights.depart(u_choice, sampler.draw(Dimensions::Light { vertex: 0 }))
+        let Some((mut origin, mut direction)) =
+            self.lights.depart(u_choice, sampler.draw(Dimensions::Light { vertex: 0 }))
         else {
             return false;
         };

@@ -3,6 +3,7 @@
 //! [`Transport`] says how light is followed; what asks for it lies to the right.
 
 mod accel;
+mod aim;
 mod bsdf;
 mod closed;
 mod compile;
@@ -17,6 +18,7 @@ mod tracer;
 mod transport;
 mod triangle;
 
+pub use aim::Aim;
 pub(crate) use compile::Compiled;
 pub(crate) use path::PathStart;
 pub(crate) use sampler::{Dimensions, Sampler, Sobol};

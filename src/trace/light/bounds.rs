@@ -5,8 +5,8 @@
 //! Only ratios matter, so that a wrong estimate costs noise; but an estimate of 0 would cost light. So every bound here
 //! is a true one: the sphere around the box stands for it, and angles have a slack above rounding.
 
-use super::emitter::{Emitter, EmitterShape};
 use super::LightContext;
+use super::emitter::{Emitter, EmitterShape};
 use glam::{DVec3, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -183,10 +183,7 @@ impl Angle {
         if self.cos > other.cos {
             return Self { sin: 0.0, cos: 1.0 };
         }
-        Self {
-            sin: self.sin * other.cos - self.cos * other.sin,
-            cos: self.cos * other.cos + self.sin * other.sin,
-        }
+        Self { sin: self.sin * other.cos - self.cos * other.sin, cos: self.cos * other.cos + self.sin * other.sin }
     }
 }
 

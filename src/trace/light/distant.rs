@@ -69,11 +69,7 @@ impl DistantDisc {
     /// A direction to it.
     pub(super) fn sample(&self, u: Vec2) -> DiscSample {
         if self.is_delta {
-            return DiscSample {
-                wi: self.axis.as_vec3(),
-                value: self.illuminance.as_dvec3(),
-                solid_angle: None,
-            };
+            return DiscSample { wi: self.axis.as_vec3(), value: self.illuminance.as_dvec3(), solid_angle: None };
         }
         let local = square_to_uniform_cone(u, self.height() as f32);
         // L · solid angle, with L = E / (π sin²).

@@ -207,11 +207,12 @@ impl Emitter {
                     Vec3::ZERO
                 }
             }
-            EmitterShape::Sphere { centre, radius } => SeenSphere::new(centre, radius, receiver)
-                .map_or(Vec3::ZERO, |seen| {
+            EmitterShape::Sphere { centre, radius } => {
+                SeenSphere::new(centre, radius, receiver).map_or(Vec3::ZERO, |seen| {
                     let scale = f64::from(self.dimming(receiver)) * seen.radiance_per_intensity();
                     (self.strength.as_dvec3() * scale).min(DVec3::splat(f64::from(f32::MAX))).as_vec3()
-                }),
+                })
+            }
             EmitterShape::Point { .. } => Vec3::ZERO,
         }
     }
@@ -278,9 +279,7 @@ impl Emitter {
                 let cosine = f64::from(self.normal.dot(wi).abs());
                 Some(Seen::new(&self.shape, receiver).solid_angle(f64::from(distance), cosine, || self.area()))
             }
-            EmitterShape::Sphere { centre, radius } => {
-                Some(SeenSphere::new(centre, radius, receiver)?.solid_angle())
-            }
+            EmitterShape::Sphere { centre, radius } => Some(SeenSphere::new(centre, radius, receiver)?.solid_angle()),
             EmitterShape::Point { .. } => None,
         }
     }
@@ -307,9 +306,8 @@ impl Emitter {
 
     /// Where and in which direction some of its light sets out, in proportion to flux.
     pub(super) fn depart(&self, [u, v, w, u_side]: [f32; 4]) -> (Vec3, Vec3) {
-        let cosine_around = |normal: Vec3, u: Vec2| {
-            Frame::new(normal).world_from_local(crate::math::square_to_cosine_hemisphere(u))
-        };
+        let cosine_around =
+            |normal: Vec3, u: Vec2| Frame::new(normal).world_from_local(crate::math::square_to_cosine_hemisphere(u));
         match (self.shape, self.cone) {
             (EmitterShape::Rectangle { .. } | EmitterShape::Triangle { .. }, _) => {
                 // The last variate serves twice: for the side, and with what is left of it for the direction.

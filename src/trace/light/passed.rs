@@ -43,9 +43,9 @@ impl Passable {
     }
 
     fn add(&mut self, members: &mut [(u32, [Vec3; 2])]) {
-        let (low, high) = members.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), (_, [l, h])| {
-            (low.min(*l), high.max(*h))
-        });
+        let (low, high) = members
+            .iter()
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), (_, [l, h])| (low.min(*l), high.max(*h)));
         let number = self.nodes.len();
         self.nodes.push(Node { low, high, link: members[0].0, is_leaf: members.len() == 1 });
         if members.len() == 1 {

@@ -74,7 +74,8 @@ impl LightTree {
         // A lopsided tree could grow deeper than a trail is long; halves never do.
         let left_over = MAX_DEPTH - depth;
         let needed = usize::BITS - (members.len() - 1).leading_zeros();
-        let middle = if needed + 1 >= left_over { None } else { split(members, &all) }.unwrap_or_else(|| halve(members));
+        let middle =
+            if needed + 1 >= left_over { None } else { split(members, &all) }.unwrap_or_else(|| halve(members));
         let (left, right) = members.split_at_mut(middle);
         self.add(left, depth + 1, trail);
         self.nodes[number as usize].link = self.nodes.len() as u32;
@@ -150,9 +151,8 @@ fn union(members: &[(u32, Group)]) -> Group {
 /// one place.
 fn split(members: &mut [(u32, Group)], all: &Group) -> Option<usize> {
     let centres = members.iter().map(|(_, group)| group.centre());
-    let (low, high) = centres.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), centre| {
-        (low.min(centre), high.max(centre))
-    });
+    let (low, high) =
+        centres.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), centre| (low.min(centre), high.max(centre)));
     let size = high - low;
     let bin_of = |group: &Group, axis: usize| {
         ((BINS as f64 * (group.centre()[axis] - low[axis]) / size[axis]) as usize).min(BINS - 1)

@@ -21,7 +21,8 @@ fn cases() -> Vec<(Emitter, Vec3)> {
         (sphere, sphere.centre() + towards * (radius * radii))
     };
     // Far, near, all but touching, touching, inside; tiny and huge.
-    let mut cases: Vec<_> = [30.0, 3.0, 1.05, 1.001, 1.0, 0.9, 1e-3].into_iter().map(|radii| case(1.0, radii)).collect();
+    let mut cases: Vec<_> =
+        [30.0, 3.0, 1.05, 1.001, 1.0, 0.9, 1e-3].into_iter().map(|radii| case(1.0, radii)).collect();
     cases.extend([case(1e-6, 3e3), case(1e-3, 5.0), case(1e6, 1.5), case(1e6, 0.5)]);
     cases
 }
@@ -121,8 +122,8 @@ fn a_receiver_that_faces_the_sphere_gets_its_intensity_over_distance_squared() {
         let (_, offset) = cone(&emitter, receiver);
         let axis = offset.normalize().as_vec3();
         let steps = 64;
-        let grid = (0..steps * steps)
-            .map(|i| Vec2::new((i % steps) as f32 + 0.5, (i / steps) as f32 + 0.5) / steps as f32);
+        let grid =
+            (0..steps * steps).map(|i| Vec2::new((i % steps) as f32 + 0.5, (i / steps) as f32 + 0.5) / steps as f32);
         let mean: f64 = grid
             .map(|u| emitter.sample(receiver, u).expect("it shines"))
             .map(|sample| sample.value.x * f64::from(sample.wi.dot(axis)))

@@ -46,8 +46,7 @@ fn crowd(count: usize, seed: u64) -> Vec<Emitter> {
 fn receivers() -> Vec<LightContext> {
     let places = [Vec3::new(30.0, 12.0, -20.0), Vec3::new(4.0, 0.3, 5.0), Vec3::new(2.0, 1.0, 2.0), Vec3::ZERO];
     let facing = |position| {
-        [None, Some(Vec3::Y), Some(Vec3::new(-0.6, -0.8, 0.0))]
-            .map(|normal| LightContext { position, normal })
+        [None, Some(Vec3::Y), Some(Vec3::new(-0.6, -0.8, 0.0))].map(|normal| LightContext { position, normal })
     };
     places.into_iter().flat_map(facing).collect()
 }
@@ -64,9 +63,8 @@ fn verdict(tree: &LightTree, ctx: &LightContext, fault: impl Fn(u32) -> f64) -> 
         });
         ((cell_of(index) + 0.5) / size).extend(0.0)
     };
-    let probabilities: Vec<f64> = (0..=COUNT)
-        .map(|index| probability(tree, ctx, index) * fault(index) * f64::from(COUNT + 1))
-        .collect();
+    let probabilities: Vec<f64> =
+        (0..=COUNT).map(|index| probability(tree, ctx, index) * fault(index) * f64::from(COUNT + 1)).collect();
     let density = |p: Vec3| {
         let cell = (p.truncate() * size).floor().min(size - 1.0);
         probabilities[cell.y as usize * CELLS[0] + cell.x as usize]
@@ -99,8 +97,7 @@ fn choices_follow_their_probabilities() {
     let uniform = verdict(&tree, &ctx, |index| 1.0 / (1025.0 * probability(&tree, &ctx, index)).max(1e-12));
     assert!(uniform.is_err(), "{uniform:?}");
     let odd: f64 = (0..COUNT).filter(|index| index % 2 == 1).map(|index| tree.probability(&ctx, index)).sum();
-    let shifted =
-        verdict(&tree, &ctx, |index| if index % 2 == 1 { 1.0 + 0.1 / odd } else { 1.0 - 0.1 / (1.0 - odd) });
+    let shifted = verdict(&tree, &ctx, |index| if index % 2 == 1 { 1.0 + 0.1 / odd } else { 1.0 - 0.1 / (1.0 - odd) });
     assert!(matches!(shifted, Err(Rejection::Counts(_))), "{shifted:?}");
 }
 
