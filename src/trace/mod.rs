@@ -3,6 +3,7 @@
 //! [`Transport`] says how light is followed; what asks for it lies to the right.
 
 mod accel;
+mod aim;
 mod attributes;
 mod bsdf;
 mod census;
@@ -25,6 +26,7 @@ mod tracer;
 mod transport;
 mod triangle;
 
+pub use aim::Aim;
 pub(crate) use census::Census;
 pub(crate) use compile::Compiled;
 pub use effects::{Effect, EffectSet, ForcedEffects};

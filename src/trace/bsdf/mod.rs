@@ -6,8 +6,6 @@
 //! direction. Every surface scatters the same way from both of its sides, but for the index of refraction, whose
 //! quotient the caller turns. Knows no textures and no world space. What scatters how much: `docs/albedo.md`.
 
-#![allow(dead_code, unused_imports, reason = "the path tracer takes the diffuse part until it takes all")]
-
 mod albedo;
 mod clearcoat;
 mod dielectric;

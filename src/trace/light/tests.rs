@@ -1,6 +1,11 @@
 //! Light sampling: points on sources follow the density that is claimed for them, on the sphere of directions and on
 //! the source itself; the two ways to ask for a density agree; and planted faults are rejected.
 
+mod hard;
+mod sky;
+mod sphere;
+mod tree;
+
 use super::lights::Parts;
 use super::seen::Seen;
 use super::{Emitter, EmitterShape, End, LightContext, LightSample, Lights, MetSource, SourceIndex, Way};
@@ -38,6 +43,16 @@ fn lights(emitters: Vec<Emitter>) -> Lights {
 
 fn free(position: Vec3) -> LightContext {
     LightContext { position, normal: None }
+}
+
+/// A way that begins at the receiver.
+fn along(origin: Vec3, direction: Vec3, end: f32) -> Way {
+    Way { origin, direction, end, passed: 0.0 }
+}
+
+/// Radiance from infinitely far away, all together.
+fn distant_radiance(lights: &Lights, wi: Vec3) -> Vec3 {
+    lights.distant(&free(Vec3::ZERO), wi).map(|met| met.radiance).sum()
 }
 
 fn pdf(emitter: &Emitter, receiver: Vec3, wi: Vec3, distance: f64) -> f64 {
@@ -257,7 +272,8 @@ fn the_choice_among_sources_follows_its_density() {
         let p = among_several(receiver, |_| 1.0);
         assert!(p.is_ok(), "{receiver}: {p:?}");
         // Planted: two sources take a little from each other, so that the total stays.
-        let probability = |index| several().chance(index, &free(receiver));
+        let (lights, ctx) = (several(), free(receiver));
+        let probability = |index| lights.chance(index, &ctx);
         let shifted = among_several(receiver, |index| match index {
             1 => 1.0 + 0.04 / probability(1),
             2 => 1.0 - 0.04 / probability(2),
@@ -320,7 +336,7 @@ fn rays_meet_free_sources_where_they_are() {
     assert!((count / 50..count / 2).contains(&hits), "{hits}");
     let passed = |end| -> Vec<MetSource> {
         let ctx = free(Vec3::new(0.5, 0.25, 2.0));
-        several().passed(&ctx, Way { origin: ctx.position, direction: Vec3::NEG_Z, end, passed: 0.0 }).collect()
+        several().passed(&ctx, along(ctx.position, Vec3::NEG_Z, end)).collect()
     };
     assert_eq!((passed(9.0).len(), passed(1.0).len()), (1, 0));
     assert_eq!(passed(9.0)[0].radiance, Vec3::ONE);

@@ -277,7 +277,8 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         let (scattering, scattering_pdf) = if K & LAYERED == 0 {
             (vertex.lambert.evaluate(wi), vertex.lambert.pdf(wi))
         } else {
-            (vertex.bsdf.evaluate(vertex.wo, wi), vertex.bsdf.pdf(vertex.wo, wi))
+            let response = vertex.bsdf.respond(vertex.wo, wi);
+            (response.value, response.pdf)
         };
         if scattering == Vec3::ZERO {
             return Vec3::ZERO;

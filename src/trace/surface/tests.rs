@@ -151,7 +151,8 @@ fn points_lie_within_the_bound() {
 /// Of an edge that two triangles share, one owns each point, whichever it is; what is inside is its triangle's own.
 #[test]
 fn one_of_two_neighbours_owns_their_edge() {
-    let corners = [Vec3::new(0.0, 0.0, 1.0), Vec3::new(2.0, 0.0, 0.0), Vec3::new(2.0, 3.0, 0.0), Vec3::new(0.0, 3.0, 1.0)];
+    let corners =
+        [Vec3::new(0.0, 0.0, 1.0), Vec3::new(2.0, 0.0, 0.0), Vec3::new(2.0, 3.0, 0.0), Vec3::new(0.0, 3.0, 1.0)];
     let placement = Placement::new(&Affine3A::IDENTITY);
     let [first, second] = [[0, 1, 2], [0, 2, 3]].map(|t| placement.triangle(t.map(|i| corners[i])).unwrap());
     for step in 1..10 {
