@@ -28,7 +28,7 @@ const MAX_SURVIVAL: f32 = 0.95;
 pub struct Patch {
     /// Share of the light that it reflects.
     pub albedo: Vec3,
-    /// Radiance that it gives off [cd/m²].
+    /// Radiance that its front gives off [cd/m²].
     pub radiance: Vec3,
 }
 
@@ -143,9 +143,12 @@ impl Teacher<'_> {
                 return sum + throughput * self.sky;
             };
             let point = origin + direction * hit.distance;
-            let normal = if hit.normal.dot(direction) < 0.0 { hit.normal } else { -hit.normal };
+            let is_front = hit.normal.dot(direction) < 0.0;
+            let normal = if is_front { hit.normal } else { -hit.normal };
             let patch = (self.patch_at)(point);
-            sum += throughput * patch.radiance;
+            if is_front {
+                sum += throughput * patch.radiance;
+            }
             let Some(weight) = self.ending.go_on(bounce, patch.albedo, random) else { return sum };
             let (wi, share) = self.directions.sample(random);
             throughput *= patch.albedo * share * weight;

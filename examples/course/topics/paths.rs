@@ -98,7 +98,7 @@ pub fn furnace(desk: &Desk) {
     let tracer = Tracer::new(&scenes::furnace(0.5, 1.0));
     let patch_at = |_| Patch { albedo: Vec3::splat(0.5), radiance: Vec3::ONE };
     for directions in [Directions::Cosine, Directions::CosineTwice, Directions::WrongDensity] {
-        let teacher = Teacher { tracer: &tracer, patch_at: &patch_at, sky: 0.0, directions, ending: Ending::Roulette };
+        let teacher = Teacher { tracer: &tracer, patch_at: &patch_at, sky: 0.0, directions, ending: Ending::Cap(50) };
         let radiance = teacher.inside(Vec3::ZERO, 100_000, 3);
         let (mean, error) = (radiance.mean(), radiance.standard_error());
         desk.say(&format!("in a closed cube of albedo 0.5, {directions:?}: L = {mean:.3} ± {error:.3}"));
