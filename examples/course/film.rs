@@ -9,7 +9,7 @@ use glam::Vec3;
 /// Pixels between pictures in a row.
 const GAP: u32 = 2;
 
-/// A square picture to be taken.
+/// A picture to be taken.
 pub struct Shot<'a> {
     /// Of what.
     pub scene: &'a Scene,

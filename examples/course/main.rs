@@ -12,6 +12,7 @@ mod topics;
 
 use bevy_kiln::bake::Picture;
 use bevy_kiln::output::write_picture;
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -21,6 +22,8 @@ use topics::TOPICS;
 pub struct Desk {
     out: PathBuf,
     start: Instant,
+    /// Whether a picture could not be kept.
+    has_failed: Cell<bool>,
 }
 
 impl Desk {
@@ -34,7 +37,10 @@ impl Desk {
         let path = self.out.join(name).with_extension("png");
         match write_picture(picture, &path, (white / 1.2).log2()) {
             Ok(()) => self.say(&format!("wrote {}", path.display())),
-            Err(error) => eprintln!("course: {error}"),
+            Err(error) => {
+                eprintln!("course: {error}");
+                self.has_failed.set(true);
+            }
         }
     }
 }
@@ -56,13 +62,13 @@ fn main() -> ExitCode {
     if wanted.is_empty() {
         wanted.extend(TOPICS);
     }
-    let desk = Desk { out, start: Instant::now() };
+    let desk = Desk { out, start: Instant::now(), has_failed: Cell::new(false) };
     for (index, topic) in wanted.iter().enumerate() {
         desk.say(&format!("{}/{} {}", index + 1, wanted.len(), topic.name));
         (topic.run)(&desk);
     }
     desk.say("done");
-    ExitCode::SUCCESS
+    if desk.has_failed.get() { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 
 fn usage(reason: &str) -> ExitCode {

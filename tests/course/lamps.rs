@@ -6,6 +6,7 @@ use crate::film::slope;
 use crate::scenes::{cornell, glowing, grey, sky_with_sun};
 use crate::stage::Stage;
 use crate::teacher::{Random, moments};
+use bevy_kiln::bake::{MeterPoint, MeterReading};
 use bevy_kiln::math::{Welford, polygon_irradiance, square_to_uniform_hemisphere};
 use bevy_kiln::scene::Scene;
 use bevy_kiln::trace::{Estimator, Tracer, Transport};
@@ -28,13 +29,15 @@ fn shaded_lamp() -> Scene {
         .build()
 }
 
+/// The irradiance at the origin from a square overhead of radiance 1, by its corner and side.
+fn square(low: Vec3, side: f32) -> f64 {
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Z, Vec3::Z];
+    let corners: Vec<DVec3> = corners.iter().map(|&corner| (low + corner * side).as_dvec3()).collect();
+    polygon_irradiance(&corners, DVec3::Y)
+}
+
 /// The irradiance at the origin by Lambert's formula: the lamp's less that of the shade's shadow on it.
 fn closed_form() -> f64 {
-    let square = |low: Vec3, side: f32| {
-        let corners = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Z, Vec3::Z];
-        let corners: Vec<DVec3> = corners.iter().map(|&corner| (low + corner * side).as_dvec3()).collect();
-        polygon_irradiance(&corners, DVec3::Y)
-    };
     square(LOW, SIDE) - square(SHADE_LOW * 2.0, SHADE_SIDE * 2.0)
 }
 
@@ -106,16 +109,15 @@ fn a_small_sun_is_found_by_its_brightness() {
 
 #[test]
 fn error_falls_with_the_root_of_the_samples() {
-    let scene = shaded_lamp();
-    let points: Vec<_> = (0..64)
-        .map(|index| at(Vec3::new((index % 8) as f32 * 0.2 - 1.6, 0.0, (index / 8) as f32 * 0.2 - 1.0), Vec3::Y))
-        .collect();
-    let reference = read(&scene, &points, 1 << 16, Transport { seed: 1, ..Transport::default() });
+    let scene = Stage::default().quad("lamp", LOW, [Vec3::X * SIDE, Vec3::Z * SIDE], glowing(0.0, 1.0)).build();
+    let places: Vec<Vec3> = (0..64).map(|index| Vec3::new((index % 8) as f32, 0.0, (index / 8) as f32) * 0.3).collect();
+    let points: Vec<MeterPoint> = places.iter().map(|&place| at(place, Vec3::Y)).collect();
     let errors = [16, 64, 256, 1024].map(|samples| {
         // Over directions, where neighbouring samples tell each other least.
         let transport = Transport { seed: u64::from(samples), estimator: Estimator::Bsdf, ..Transport::default() };
         let readings = read(&scene, &points, samples, transport);
-        let squares = readings.iter().zip(&reference).map(|(a, b)| (a.irradiance.y - b.irradiance.y).powi(2));
+        let off = |(reading, place): (&MeterReading, &Vec3)| reading.irradiance.y - square(LOW - *place, SIDE);
+        let squares = readings.iter().zip(&places).map(|pair| off(pair).powi(2));
         (f64::from(samples), squares.sum::<f64>().sqrt())
     });
     let falls = |slope: f64| (-0.9..-0.4).contains(&slope);

@@ -15,6 +15,20 @@ fn page() -> String {
     std::fs::read_to_string(docs().join("course.md")).expect("docs/course.md is there")
 }
 
+/// All Rust code under a folder.
+fn code(folder: &Path) -> String {
+    let mut all = String::new();
+    for entry in std::fs::read_dir(folder).expect("a folder of this repository") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            all += &code(&path);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            all += &std::fs::read_to_string(path).expect("Rust code");
+        }
+    }
+    all
+}
+
 #[test]
 fn links_lead_somewhere() {
     let page = page();
@@ -28,16 +42,8 @@ fn links_lead_somewhere() {
 #[test]
 fn tests_that_it_names_are_there() {
     let page = page();
-    let sources = ["tests/course", "tests", "src/math/tests", "src/trace/path"];
-    let mut code = String::new();
-    for folder in sources {
-        for entry in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).expect(folder) {
-            let path = entry.expect(folder).path();
-            if path.extension().is_some_and(|extension| extension == "rs") {
-                code += &std::fs::read_to_string(path).expect(folder);
-            }
-        }
-    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let code = code(&root.join("src")) + &code(&root.join("tests"));
     let names = page.split('`').skip(1).step_by(2).filter(|name| name.contains('_') && !name.contains([' ', '/', ':']));
     let names: Vec<&str> = names.collect();
     assert!(names.len() > 10, "{names:?}");

@@ -11,12 +11,15 @@ use bevy_kiln::trace::{Tracer, Transport};
 use glam::Vec3;
 use std::f64::consts::PI;
 
+/// Radiance by the cosine to the zenith.
+type Sky = fn(f32) -> f32;
+
 /// Variance of one sample of the irradiance, over π²; from ∫ cosⁿ over the sphere, the hemisphere, and by the cosine.
 #[test]
 fn what_three_ways_to_choose_directions_cost() {
     let uniform_sky = [5.0 / 3.0, 1.0 / 3.0, 0.0];
     let cosine_sky = [1.6 - 4.0 / 9.0, 0.8 - 4.0 / 9.0, 0.5 - 4.0 / 9.0];
-    let skies: [(fn(f32) -> f32, f64, [f64; 3]); 2] =
+    let skies: [(Sky, f64, [f64; 3]); 2] =
         [(|_| 1.0, PI, uniform_sky), (|cosine| cosine.max(0.0), 2.0 * PI / 3.0, cosine_sky)];
     for (radiance, truth, variances) in skies {
         let ways = [Directions::UniformSphere, Directions::UniformHemisphere, Directions::Cosine];

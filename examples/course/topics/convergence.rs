@@ -17,7 +17,7 @@ const PIECE: [u32; 6] = [10, 100, 1000, 10_000, 100_000, 1_000_000];
 const PIECE_SIZE: u32 = 4;
 const ENLARGED: u32 = 24;
 
-/// The Cornell box and a piece of it where a shadow ends, from 10 to a million paths.
+/// The Cornell box and a piece of it, from 10 to a million paths.
 pub fn convergence(desk: &Desk) {
     let scene = scenes::cornell();
     let camera = scenes::cornell_camera();
@@ -26,7 +26,7 @@ pub fn convergence(desk: &Desk) {
         Shot { scene: &scene, camera: &camera, size: [96; 2], samples }.take()
     });
     desk.keep("convergence", &row(&whole), 0.7);
-    // On the floor beside the short block, as large as four pixels of the whole.
+    // On the floor between the blocks, as large as four pixels of the whole.
     let eye = Vec3::from(camera.world_from_camera.translation);
     let fov = camera.vertical_fov * PIECE_SIZE as f32 / 96.0;
     let piece = Camera::look_at("piece", eye, Vec3::new(2.95, 0.0, 2.6), fov);
