@@ -5,14 +5,13 @@
 //! lights are Lambert's; they differ by a factor of roughness and angles (Burley 2012, as in pbr_lighting.wgsl), which
 //! is computed here for each pixel. Nothing else is corrected.
 
+mod glow;
 mod light;
 mod stage;
 mod verdict;
 
 use crate::renderer::{EXPOSURE, Screen, app, bake, show};
-use bevy::light::GlobalAmbientLight;
 use bevy::prelude::*;
-use bevy_kiln::math::polygon_irradiance;
 use bevy_kiln::prelude::*;
 use glam::DVec3;
 use light::Kind;
@@ -96,87 +95,4 @@ fn picture(app: &App, stage: &[Option<Shown>]) -> Vec<DVec3> {
     let screen = &app.world().resource::<Screen>().0;
     assert_eq!(screen.len(), stage.len(), "nothing was read back");
     screen.iter().zip(stage).filter(|(_, at)| at.is_some()).map(|(pixel, _)| pixel.as_dvec3()).collect()
-}
-
-/// Bevy shows ambient light through an approximation that takes away more than half of it, so that there is only the
-/// closed form to hold it against: E = π L where nothing is in the way.
-#[test]
-fn ambient_light_and_what_glows_are_baked_by_their_closed_forms() {
-    let Some(mut app) = app() else { return };
-    stage::spawn(app.world_mut());
-    let stage = stage::shown();
-    let ambient = GlobalAmbientLight { color: Color::linear_rgb(1.0, 0.5, 0.25), brightness: 2.0, ..default() };
-    app.insert_resource(ambient);
-    let scene = SceneSettings { ambient: AmbientMode::Bake, ..direct().scene };
-    bake(&mut app, BakeLightmaps { scene, ..direct() });
-    let albedo = stage::pieces().map(|piece| piece.albedo);
-    let expected = stage.iter().flatten().map(|at| DVec3::new(2.0, 1.0, 0.5) * albedo[at.piece] * EXPOSURE);
-    let difference = compare(&picture(&app, &stage), &expected.collect::<Vec<_>>());
-    println!("ambient: {difference:?}");
-    difference.verdict().unwrap();
-    app.world_mut().trigger(ClearLightmaps);
-    app.insert_resource(GlobalAmbientLight::NONE);
-
-    spawn_glowing(app.world_mut());
-    show(&mut app);
-    // The radiance that the screen shows is what lights the room, whatever the unit of `emissive` may be.
-    let on_screen = app.world().resource::<Screen>().0[pixel_of(GLOWING)].as_dvec3() / EXPOSURE;
-    assert!((on_screen / (1.2 * GLOW.as_dvec3()) - 1.0).abs().max_element() < 2e-3, "{on_screen}");
-    bake(&mut app, direct());
-    let screen = app.world().resource::<Screen>().0.clone();
-    let free = stage.iter().zip(&screen).filter_map(|(at, pixel)| Some((at.as_ref()?, pixel)));
-    let free = free.filter(|(at, _)| !is_hidden(at));
-    let (mut seen, mut truth) = (Vec::new(), Vec::new());
-    for (at, pixel) in free {
-        let corners = glowing_corners().map(|corner| corner - at.point);
-        seen.push(pixel.as_dvec3());
-        truth.push(on_screen * polygon_irradiance(&corners, at.normal) / PI * albedo[at.piece] * EXPOSURE);
-    }
-    let difference = compare(&seen, &truth);
-    println!("emissive: {difference:?}");
-    difference.verdict().unwrap();
-    let brighter: Vec<DVec3> = seen.iter().map(|pixel| *pixel * 1.02).collect();
-    assert!(compare(&brighter, &truth).verdict().is_err());
-}
-
-const GLOWING: DVec3 = DVec3::new(0.0, 1.2, -0.6);
-const GLOWING_HALF: f64 = 0.3;
-const GLOW: Vec3 = Vec3::new(20.0, 15.0, 10.0);
-
-fn glowing_corners() -> [DVec3; 4] {
-    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, z]| GLOWING + DVec3::new(x, 0.0, z) * GLOWING_HALF)
-}
-
-/// A level square that glows on both sides and reflects nothing.
-fn spawn_glowing(world: &mut World) {
-    let material = StandardMaterial {
-        base_color: Color::BLACK,
-        reflectance: 0.0,
-        emissive: LinearRgba::rgb(GLOW.x, GLOW.y, GLOW.z),
-        double_sided: true,
-        cull_mode: None,
-        ..default()
-    };
-    let side = 2.0 * GLOWING_HALF as f32;
-    let mesh = world.resource_mut::<Assets<Mesh>>().add(Plane3d::default().mesh().size(side, side));
-    let material = world.resource_mut::<Assets<StandardMaterial>>().add(material);
-    let place = Transform::from_translation(GLOWING.as_vec3());
-    world.spawn((Name::new("glowing"), LightBlocker, Mesh3d(mesh), MeshMaterial3d(material), place));
-}
-
-/// Whether the glowing square is before a place, or nearly so.
-fn is_hidden(at: &Shown) -> bool {
-    let share = (GLOWING.y - at.point.y) / (stage::eye().y - at.point.y);
-    let crossing = at.point.lerp(stage::eye(), share);
-    (0.0..1.0).contains(&share) && (crossing - GLOWING).abs().max_element() < 1.3 * GLOWING_HALF
-}
-
-/// The pixel that shows a point.
-fn pixel_of(point: DVec3) -> usize {
-    let towards = (point - stage::eye()).normalize();
-    let pixels = (0..stage::HEIGHT * stage::WIDTH).map(|pixel| {
-        let place = glam::DVec2::new((pixel % stage::WIDTH) as f64, (pixel / stage::WIDTH) as f64) + 0.5;
-        (stage::ray(place).dot(towards), pixel)
-    });
-    pixels.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(0, |(_, pixel)| pixel)
 }

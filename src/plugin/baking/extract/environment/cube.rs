@@ -4,6 +4,7 @@
 
 use crate::math::luminance;
 use bevy::math::Vec3;
+use rayon::prelude::*;
 use std::f32::consts::{PI, TAU};
 
 /// Width of the finest picture that is made [pixels]; and of the coarsest, as few texels make big steps.
@@ -30,15 +31,16 @@ impl Cube {
         let width = self.side.saturating_mul(4).clamp(NARROWEST, WIDEST);
         let height = width / 2;
         let rough = self.rough();
-        let mut radiance = Vec::with_capacity(width as usize * height as usize);
-        for row in 0..height {
+        let of_row = |row: u32| {
             // Equal areas between the two parallels are equal steps of the cosine.
             let parallels = [row, row + 1].map(|row| (row as f32 / height as f32 * PI).cos());
-            radiance.extend((0..width).map(|column| {
+            let rough = &rough;
+            (0..width).map(move |column| {
                 let meridians = [column, column + 1].map(|column| (column as f32 / width as f32 - 0.5) * TAU);
-                self.mean(&rough, parallels, meridians)
-            }));
-        }
+                self.mean(rough, parallels, meridians)
+            })
+        };
+        let radiance = (0..height).into_par_iter().flat_map_iter(of_row).collect();
         (width, height, radiance)
     }
 
