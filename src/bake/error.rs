@@ -1,6 +1,7 @@
 //! Why a bake did not happen, and what it left out, sorted by who must act.
 
 use crate::scene::{Fault, Subject};
+use crate::trace::{Effect, EffectSet, Transport};
 use thiserror::Error;
 
 /// Why there is no result.
@@ -78,6 +79,12 @@ pub enum BakeWarning {
         /// The object.
         subject: Subject,
     },
+    /// Effects that a scene calls for and that a person forced off.
+    #[error("forced off, so that their light is missing: {effects}")]
+    ForcedOff {
+        /// Their names.
+        effects: String,
+    },
     /// Texel values beyond what a texture format can hold.
     #[error("{texels} texels are brighter than {format} can hold ({limit} cd/m²) and were clamped")]
     Clamped {
@@ -88,6 +95,15 @@ pub enum BakeWarning {
         /// The largest value that it holds [cd/m²].
         limit: f32,
     },
+}
+
+impl BakeWarning {
+    /// The warning of effects that are called for and forced off, if there are any.
+    pub(super) fn forced_off(transport: &Transport, called: EffectSet) -> Option<Self> {
+        let missing: Vec<&str> =
+            called.iter().filter(|&effect| transport.effects.off.has(effect)).map(Effect::name).collect();
+        (!missing.is_empty()).then(|| Self::ForcedOff { effects: missing.join(", ") })
+    }
 }
 
 impl From<Fault> for BakeWarning {

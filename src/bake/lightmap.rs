@@ -8,8 +8,8 @@ use super::sites::{Site, sites};
 use super::workers::Workers;
 use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, ProgressSink, Stage};
 use crate::artefact::StableId;
-use crate::scene::{Fault, Scene};
-use crate::trace::{Compiled, Dimensions, Sampler, Tracer};
+use crate::scene::{Fault, Light, Scene};
+use crate::trace::{Compiled, Dimensions, Sampler, Tracer, effect_of};
 use glam::{Vec2, Vec3};
 use std::time::Instant;
 
@@ -71,7 +71,7 @@ pub fn bake_lightmap(
     settings.validate()?;
     let workers = Workers::new(settings.threads, progress, cancel)?;
     workers.announce(Stage::Prepare)?;
-    let Compiled { tracer, faults, .. } = Compiled::new(scene, &settings.transport);
+    let Compiled { tracer, faults, census } = Compiled::new(scene, &settings.transport);
     refuse_what_cannot_be_baked(&tracer, &faults)?;
     let atlas = Atlas::new(scene, &tracer, settings)?;
     let (sites, overlaps) = sites(scene, &tracer, &atlas, settings);
@@ -90,10 +90,12 @@ pub fn bake_lightmap(
     let balance = energy_balance(&tracer, &sites, &work.results, &settings.transport, &workers)?;
     workers.announce(Stage::Repair)?;
     let pages = pages(&atlas, &sites, &work.results);
-    let warnings = faults.into_iter().map(BakeWarning::from).chain(overlaps);
+    let forced_off = BakeWarning::forced_off(&settings.transport, census.called());
+    let warnings = faults.into_iter().map(BakeWarning::from).chain(overlaps).chain(forced_off);
     let report =
         BakeReport { energy_balance: balance, ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings) };
-    let baked_lights = scene.lights.iter().filter(|light| light.faults().is_empty()).map(|light| light.id().clone());
+    let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));
+    let baked_lights = scene.lights.iter().filter(is_baked).map(|light| light.id().clone());
     let mut baked_lights: Vec<StableId> = baked_lights.collect();
     baked_lights.sort();
     Ok(Lightmap { placements: placements(scene, &atlas), pages, baked_lights, report })

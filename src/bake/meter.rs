@@ -84,7 +84,7 @@ pub fn measure_irradiance(
     }
     let workers = Workers::new(*threads, progress, cancel)?;
     workers.announce(Stage::Prepare)?;
-    let Compiled { tracer, faults, .. } = Compiled::new(scene, transport);
+    let Compiled { tracer, faults, census } = Compiled::new(scene, transport);
     let work = workers.gather(
         points,
         |point, cancel| {
@@ -101,9 +101,11 @@ pub fn measure_irradiance(
         stderr: estimate.stderr * PI,
         samples: estimate.samples,
     };
+    let warnings = faults.into_iter().map(BakeWarning::from);
+    let warnings = warnings.chain(BakeWarning::forced_off(transport, census.called()));
     Ok(Measurement {
         readings: work.results.iter().map(reading).collect(),
-        report: BakeReport::of(&work, clock.elapsed(), transport, faults.into_iter().map(BakeWarning::from)),
+        report: BakeReport::of(&work, clock.elapsed(), transport, warnings),
     })
 }
 

@@ -63,7 +63,7 @@ pub fn render_picture(
     }
     let workers = Workers::new(settings.threads, progress, cancel)?;
     workers.announce(Stage::Prepare)?;
-    let Compiled { tracer, faults, .. } = Compiled::new(scene, &settings.transport);
+    let Compiled { tracer, faults, census } = Compiled::new(scene, &settings.transport);
     let eye = Vec3::from(camera.world_from_camera.translation);
     let pixels: Vec<u32> = (0..width * height).collect();
     let work = workers.gather(
@@ -80,12 +80,14 @@ pub fn render_picture(
         },
         Estimate::relative_stderr,
     )?;
+    let warnings = faults.into_iter().map(BakeWarning::from);
+    let warnings = warnings.chain(BakeWarning::forced_off(&settings.transport, census.called()));
     Ok(Picture {
         width,
         height,
         radiance: work.results.iter().map(|estimate| estimate.mean.as_vec3()).collect(),
         stderr: work.results.iter().map(|estimate| estimate.stderr.as_vec3()).collect(),
-        report: BakeReport::of(&work, clock.elapsed(), &settings.transport, faults.into_iter().map(BakeWarning::from)),
+        report: BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings),
     })
 }
 

@@ -19,6 +19,15 @@ pub(crate) struct Census {
     environment_size: [u32; 2],
 }
 
+/// The effect that a light is a part of.
+pub(crate) fn effect_of(light: &Light) -> Effect {
+    match light {
+        Light::Rect(_) => Effect::AreaLights,
+        Light::Point(_) | Light::Spot(_) => Effect::PointLights,
+        Light::Directional(_) => Effect::DirectionalLights,
+    }
+}
+
 /// Which parts of a scene count.
 pub(super) struct Counted<'a> {
     pub(super) scene: &'a Scene,
@@ -114,20 +123,12 @@ impl Census {
     }
 
     fn take_light(&mut self, light: &Light) {
+        self.call(effect_of(light), 1);
         match light {
-            Light::Rect(_) => self.call(Effect::AreaLights, 1),
-            Light::Point(light) => {
-                self.call(Effect::PointLights, 1);
-                self.sized_point_lights += u64::from(light.radius > 0.0);
-            }
-            Light::Spot(light) => {
-                self.call(Effect::PointLights, 1);
-                self.sized_point_lights += u64::from(light.bulb.radius > 0.0);
-            }
-            Light::Directional(light) => {
-                self.call(Effect::DirectionalLights, 1);
-                self.sized_suns += u64::from(light.angular_diameter > 0.0);
-            }
+            Light::Rect(_) => {}
+            Light::Point(light) => self.sized_point_lights += u64::from(light.radius > 0.0),
+            Light::Spot(light) => self.sized_point_lights += u64::from(light.bulb.radius > 0.0),
+            Light::Directional(light) => self.sized_suns += u64::from(light.angular_diameter > 0.0),
         }
     }
 

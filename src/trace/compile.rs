@@ -4,7 +4,7 @@
 mod sound;
 mod world;
 
-use super::census::{Census, Counted};
+use super::census::{Census, Counted, effect_of};
 use super::effects::Effect;
 use super::tracer::Tracer;
 use super::transport::Transport;
@@ -57,12 +57,7 @@ impl Compiled {
         }
         world.add_emitters();
         for light in lights {
-            let effect = match light {
-                Light::Rect(_) => Effect::AreaLights,
-                Light::Point(_) | Light::Spot(_) => Effect::PointLights,
-                Light::Directional(_) => Effect::DirectionalLights,
-            };
-            if effects.has(effect) {
+            if effects.has(effect_of(light)) {
                 world.add_light(light);
             }
         }

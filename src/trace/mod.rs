@@ -27,7 +27,7 @@ mod transport;
 mod triangle;
 
 pub use aim::Aim;
-pub(crate) use census::Census;
+pub(crate) use census::{Census, effect_of};
 pub(crate) use compile::Compiled;
 pub use effects::{Effect, EffectSet, ForcedEffects};
 pub(crate) use path::PathStart;

@@ -1,8 +1,9 @@
 //! What a game says to the baker and hears from it. All are triggered with `commands.trigger(...)` and heard by
 //! observers.
 
+use super::extract::extract_scene;
 use super::settings::SceneSettings;
-use crate::bake::{BakeSettings, Layout, Lightmap, Progress, Stage};
+use crate::bake::{BakeError, BakePlan, BakeSettings, Layout, Lightmap, Progress, Stage};
 use crate::trace::{Estimator, ForcedEffects, Transport};
 use bevy::prelude::*;
 use std::num::NonZeroUsize;
@@ -84,6 +85,16 @@ impl Default for BakeLightmaps {
 }
 
 impl BakeLightmaps {
+    /// What this bake would do with the world as it stands, and what it would cost. Traces a pilot on the calling
+    /// thread: seconds at most for a scene of ordinary size.
+    ///
+    /// # Errors
+    ///
+    /// What would keep the bake from being done.
+    pub fn plan(&self, world: &mut World) -> Result<BakePlan, BakeError> {
+        BakePlan::for_scene(&extract_scene(world, &self.scene).scene, &self.bake_settings())
+    }
+
     /// The same in the baker's own words.
     pub fn bake_settings(&self) -> BakeSettings {
         BakeSettings {
