@@ -34,6 +34,11 @@
 //! [`LightBlocker`], on the thing or on anything above it; without a receiver anywhere every mesh receives. What
 //! a folder of the `kiln` command holds goes on a scene as [`BakedLightmaps`] beside its root.
 //!
+//! Lights, materials and skies are read as Bevy shows them. What shines from all around is a camera's
+//! `EnvironmentMapLight`, or the picture in [`SceneSettings::environment`]. A `RectLight` is baked in any case, but
+//! Bevy draws it only with its own feature `area_light_luts`. Bevy's glTF loader gives lights without a range one of
+//! 20 m, and spot lights their range as their radius; both are taken away again.
+//!
 //! Deferred rendering adds baked lights a second time whatever the flags say (Bevy 0.19); use forward rendering.
 
 mod display;

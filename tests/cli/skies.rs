@@ -77,3 +77,23 @@ fn a_sky_from_a_file_lies_the_right_way_round_and_is_radiance() {
     }
     assert_eq!(rows.len(), 4);
 }
+
+#[test]
+fn a_pixel_that_is_no_number_is_named() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let sky = folder.path().join("spoilt.exr");
+    let pixel = |x: usize, y: usize| if (x, y) == (3, 1) { (f32::NAN, 1.0, 1.0) } else { (1.0_f32, 1.0_f32, 1.0_f32) };
+    exr::prelude::write_rgb_file(&sky, 4, 2, pixel).unwrap();
+    let mut command = kiln();
+    command
+        .arg("bake")
+        .arg(data("cornell.glb"))
+        .arg("-o")
+        .arg(folder.path().join("out"))
+        .arg("--environment")
+        .arg(&sky);
+    let output = command.args(["--density", "1", "--spp", "16"]).output().unwrap();
+    let stderr = text(&output.stderr);
+    assert!(stderr.contains("spoilt.exr\" has a pixel that is negative or not a finite number"), "{stderr}");
+    assert!(stderr.contains("column 3, row 1") && !stderr.contains("panicked"), "{stderr}");
+}

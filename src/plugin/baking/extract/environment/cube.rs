@@ -5,18 +5,20 @@
 use crate::math::luminance;
 use bevy::math::Vec3;
 use rayon::prelude::*;
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::TAU;
 
 /// Width of the finest picture that is made [pixels]; and of the coarsest, as few texels make big steps.
 const WIDEST: u32 = 4096;
 const NARROWEST: u32 = 256;
 
-/// Looks into the cube for a pixel among texels that are much alike, and for one among others.
-const FEW: u32 = 16;
+/// Looks into the cube along each side of a pixel.
+const FEW: u32 = 4;
+
+/// Looks into the cube for a pixel at the edge of something bright, where few would miss or add too much of it.
 const MANY: u32 = 512;
 
-/// Ratio of the brightest to the darkest of a texel and those around it from which on they are not alike.
-const CONTRAST: f32 = 1.5;
+/// As many times brighter than the mean is bright. Errors at the edges of all else are small and cancel.
+const BRIGHT: f32 = 8.0;
 
 /// A cube map: faces +X, -X, +Y, -Y, +Z, -Z, each row by row.
 pub(super) struct Cube {
@@ -29,55 +31,47 @@ impl Cube {
     /// Width, height and radiance in the frame of an environment map.
     pub(super) fn equirectangular(&self) -> (u32, u32, Vec<Vec3>) {
         let width = self.side.saturating_mul(4).clamp(NARROWEST, WIDEST);
-        let height = width / 2;
-        let rough = self.rough();
+        let grid = Grid::new(width, FEW * (4 * self.side).div_ceil(width));
+        let bright = self.near_bright();
         let of_row = |row: u32| {
-            // Equal areas between the two parallels are equal steps of the cosine.
-            let parallels = [row, row + 1].map(|row| (row as f32 / height as f32 * PI).cos());
-            let rough = &rough;
-            (0..width).map(move |column| {
-                let meridians = [column, column + 1].map(|column| (column as f32 / width as f32 - 0.5) * TAU);
-                self.mean(rough, parallels, meridians)
-            })
+            let (grid, bright) = (&grid, &bright);
+            (0..width).map(move |column| self.mean(grid, bright, [column, row]))
         };
+        let height = width / 2;
         let radiance = (0..height).into_par_iter().flat_map_iter(of_row).collect();
         (width, height, radiance)
     }
 
-    /// Per texel, whether it or one around it is much brighter than another.
-    fn rough(&self) -> Vec<bool> {
-        let side = self.side;
-        let bright = |texel: usize| luminance(self.texels[texel].as_dvec3()) as f32;
-        let texels = (0..6).flat_map(|face| (0..side).flat_map(move |r| (0..side).map(move |c| (face, r, c))));
-        let is_rough = |(face, row, column): (usize, u32, u32)| {
-            let place = |texel: u32, step: f32| (texel as f32 + 0.5 + step) * 2.0 / side as f32 - 1.0;
+    /// Per texel, whether it or one around it is bright.
+    fn near_bright(&self) -> Vec<bool> {
+        let brightness = |texel: &Vec3| luminance(texel.as_dvec3()) as f32;
+        let mean = self.texels.iter().map(brightness).sum::<f32>() / self.texels.len() as f32;
+        let side = self.side as usize;
+        let mut near = vec![false; self.texels.len()];
+        let bright = self.texels.iter().enumerate().filter(|(_, texel)| brightness(texel) > BRIGHT * mean);
+        for (number, _) in bright {
+            let (face, row, column) = (number / (side * side), number / side % side, number % side);
+            let place = |texel: usize, step: f32| (texel as f32 + 0.5 + step) * 2.0 / side as f32 - 1.0;
             let steps = [-1.0, 0.0, 1.0];
-            let around = steps.into_iter().flat_map(|down| steps.map(|across| (across, down)));
-            let around = around
-                .map(|(across, down)| bright(self.texel(direction(face, place(column, across), place(row, down)))));
-            let (low, high) = around.fold((f32::INFINITY, 0.0_f32), |(low, high), b| (low.min(b), high.max(b)));
-            high > CONTRAST * low
-        };
-        texels.map(is_rough).collect()
+            for (across, down) in steps.into_iter().flat_map(|down| steps.map(|across| (across, down))) {
+                near[self.texel(direction(face, place(column, across), place(row, down)))] = true;
+            }
+        }
+        near
     }
 
-    /// The mean over what two parallels (by their cosines from +Y) and two meridians enclose.
-    fn mean(&self, rough: &[bool], parallels: [f32; 2], meridians: [f32; 2]) -> Vec3 {
-        // A picture coarser than the cube needs more looks to see every texel.
-        let texels_across = self.side as f32 * (meridians[1] - meridians[0]) * 4.0 / TAU;
-        let few = FEW * (texels_across * texels_across).ceil().max(1.0) as u32;
-        let looks = |count: u32| {
-            (0..count).map(move |look| {
-                let [x, y] = hammersley(look, count);
-                let cosine = parallels[0] + (parallels[1] - parallels[0]) * y;
-                let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-                let (sin, cos) = (meridians[0] + (meridians[1] - meridians[0]) * x).sin_cos();
-                // The map's frame is right-handed, the cube is not.
-                self.texel(Vec3::new(sine * cos, cosine, -sine * sin))
-            })
-        };
-        let count = if looks(few).any(|texel| rough[texel]) { few.max(MANY) } else { few };
-        looks(count).map(|texel| self.texels[texel]).sum::<Vec3>() / count as f32
+    /// The mean over a pixel.
+    fn mean(&self, grid: &Grid, bright: &[bool], pixel: [u32; 2]) -> Vec3 {
+        let (mut sum, mut is_near_bright) = (Vec3::ZERO, false);
+        for texel in grid.looks(pixel).map(|direction| self.texel(direction)) {
+            sum += self.texels[texel];
+            is_near_bright |= bright[texel];
+        }
+        if is_near_bright {
+            let texels = (0..MANY).map(|look| self.texel(grid.direction(pixel, hammersley(look, MANY))));
+            return texels.map(|texel| self.texels[texel]).sum::<Vec3>() / MANY as f32;
+        }
+        sum / (grid.fineness * grid.fineness) as f32
     }
 
     /// The texel in a direction of the cube's own left-handed frame.
@@ -96,6 +90,59 @@ impl Cube {
         let side = self.side as usize;
         (face * side + number(down)) * side + number(across)
     }
+}
+
+/// Where the looks into the cube for the pixels of an equirectangular picture go, in the cube's left-handed frame.
+struct Grid {
+    width: u32,
+    /// Looks along each side of a pixel.
+    fineness: u32,
+    /// Sine and cosine of each meridian, `fineness` per column.
+    meridians: Vec<[f32; 2]>,
+    /// Sine and cosine of each angle from +Y, `fineness` per row.
+    parallels: Vec<[f32; 2]>,
+}
+
+impl Grid {
+    fn new(width: u32, fineness: u32) -> Self {
+        let mut grid = Self { width, fineness, meridians: Vec::new(), parallels: Vec::new() };
+        let middle = |look: u32| ((look % fineness) as f32 + 0.5) / fineness as f32;
+        grid.meridians = (0..width * fineness).map(|look| grid.meridian(look / fineness, middle(look))).collect();
+        grid.parallels = (0..width / 2 * fineness).map(|look| grid.parallel(look / fineness, middle(look))).collect();
+        grid
+    }
+
+    fn meridian(&self, column: u32, share: f32) -> [f32; 2] {
+        <[f32; 2]>::from((((column as f32 + share) / self.width as f32 - 0.5) * TAU).sin_cos())
+    }
+
+    /// Equal areas between two parallels are equal steps of the cosine.
+    fn parallel(&self, row: u32, share: f32) -> [f32; 2] {
+        let [top, bottom] = [row, row + 1].map(|row| (row as f32 * TAU / self.width as f32).cos());
+        let cosine = top + (bottom - top) * share;
+        [(1.0 - cosine * cosine).max(0.0).sqrt(), cosine]
+    }
+
+    fn direction(&self, [column, row]: [u32; 2], [x, y]: [f32; 2]) -> Vec3 {
+        towards(self.meridian(column, x), self.parallel(row, y))
+    }
+
+    fn looks(&self, [column, row]: [u32; 2]) -> impl Iterator<Item = Vec3> + '_ {
+        let of = |angles: &'_ [[f32; 2]], pixel: u32| {
+            let first = (pixel * self.fineness) as usize;
+            first..(first + self.fineness as usize).min(angles.len())
+        };
+        let columns = of(&self.meridians, column);
+        let parallels = &self.parallels[of(&self.parallels, row)];
+        parallels.iter().flat_map(move |&parallel| {
+            self.meridians[columns.clone()].iter().map(move |&meridian| towards(meridian, parallel))
+        })
+    }
+}
+
+/// The map's frame is right-handed, the cube is not.
+fn towards([sin, cos]: [f32; 2], [sine, cosine]: [f32; 2]) -> Vec3 {
+    Vec3::new(sine * cos, cosine, -sine * sin)
 }
 
 /// The direction of a place on the plane of a face, from -1 to 1 across and down; beyond that, of one on the next.
