@@ -40,11 +40,6 @@ impl DistantDisc {
         Self { axis, illuminance: light.illuminance, half_sin, half_cos: half_cos.max(0.0), is_delta }
     }
 
-    /// Whether no ray meets it by itself.
-    pub(super) fn is_delta(&self) -> bool {
-        self.is_delta
-    }
-
     /// 1 − cos of the half angle.
     fn height(&self) -> f64 {
         self.half_sin * self.half_sin / (1.0 + self.half_cos)

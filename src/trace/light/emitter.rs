@@ -120,6 +120,7 @@ impl Emitter {
 
     /// The weights of the second and the third vertex at a point near a triangle; shares of the two edges at one near
     /// a rectangle.
+    #[cfg_attr(not(test), allow(dead_code, reason = "for who looks up the texture of an emission"))]
     pub(in crate::trace) fn weights_of(&self, point: Vec3) -> Option<[f32; 2]> {
         let (corner, [u, v]) = match self.shape {
             EmitterShape::Rectangle { corner, edges } => (corner, edges),
@@ -133,7 +134,7 @@ impl Emitter {
         Some(weights.map(|weight| weight.clamp(0.0, 1.0) as f32))
     }
 
-    /// What a scene cannot do without being told: flux per channel [lm]. `None` for a lamp with a range, whose flux is
+    /// Flux per channel [lm]. `None` for a lamp with a range, whose flux is
     /// lost on the way, and for a spot light with a size, whose dimming is no radiance that is conserved.
     pub(in crate::trace) fn flux(&self) -> Option<DVec3> {
         let solid_angle = match (self.shape, self.cone) {

@@ -188,12 +188,6 @@ impl Lights {
         discs.chain(sky)
     }
 
-    /// Radiance that a ray meets which leaves the scene, discs and pictures of the sky together [cd/m²].
-    pub(in crate::trace) fn distant_radiance(&self, wi: Vec3) -> Vec3 {
-        let discs: Vec3 = self.distant.iter().map(|disc| disc.radiance(wi)).sum();
-        discs + self.environment.as_ref().map_or(Vec3::ZERO, |environment| environment.look(wi).0)
-    }
-
     /// Radiance of the picture of the sky alone in a direction, which a camera may see [cd/m²].
     pub(in crate::trace) fn sky_picture(&self, wi: Vec3) -> Vec3 {
         self.environment.as_ref().map_or(Vec3::ZERO, |environment| environment.look(wi).0)

@@ -65,6 +65,7 @@ pub(super) struct LightSample {
     /// Where a shadow ray ends.
     pub(super) end: End,
     /// How far away the source is met [m].
+    #[cfg_attr(not(test), allow(dead_code, reason = "for who follows light through what it passes"))]
     pub(super) distance: f32,
     /// What the sample counts for if nothing blocks it [cd/m² sr = lx on a surface that faces it]: the radiance that
     /// arrives over `pdf`; of a delta source, the irradiance on a surface that faces it over the chance of choosing
@@ -73,6 +74,7 @@ pub(super) struct LightSample {
     /// Density of `wi`, the choice of the source included [1/sr]; `None` for a delta source.
     pub(super) pdf: Option<f32>,
     /// Which source it is.
+    #[cfg_attr(not(test), allow(dead_code, reason = "for who looks up the texture of an emission"))]
     pub(super) source: SourceIndex,
 }
 

@@ -331,3 +331,18 @@ fn rays_meet_free_sources_where_they_are() {
     assert_eq!((passed(9.0).len(), passed(1.0).len()), (1, 0));
     assert_eq!(passed(9.0)[0].radiance, Vec3::ONE);
 }
+
+/// Weights of vertices at a sampled point are those that lead there.
+#[test]
+fn weights_lead_to_the_point() {
+    let mut random = Random::new(12);
+    for emitter in [rectangle(), triangle()] {
+        let (corner, [u, v]) = axes(&emitter);
+        for _ in 0..100 {
+            let point = target(emitter.sample(RECEIVERS[0], random.square()).expect("both sides shine").end);
+            let [s, t] = emitter.weights_of(point).expect("it is flat");
+            assert!((corner + s * u + t * v - point).length() < 1e-6);
+        }
+    }
+    assert_eq!(source(EmitterShape::Point { centre: Vec3::ZERO }, false).weights_of(Vec3::X), None);
+}
