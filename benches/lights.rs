@@ -23,7 +23,7 @@ fn numbers(seed: u64, index: u64) -> Vec3 {
 /// A hall of 40 × 10 × 40 m with so many lamps in it: bulbs and panels.
 fn hall(count: u64) -> Tracer {
     let light = |index: u64| {
-        let (id, name) = (StableId::new(&format!("{index:05}")), format!("lamp {index}"));
+        let (id, name) = (StableId::new(format!("{index:05}")), format!("lamp {index}"));
         let position = numbers(1, index) * Vec3::new(40.0, 6.0, 40.0) + Vec3::Y * 4.0;
         if index.is_multiple_of(2) {
             let intensity = Vec3::splat(1.0 + numbers(2, index).x);

@@ -102,3 +102,31 @@ fn neighbours_stay_neighbours() {
         }
     }
 }
+
+#[test]
+fn the_uniform_cone_and_the_sphere() {
+    // Wide cones on the sphere, their rim aligned with the cells' heights: 1 − z is a multiple of 2/25.
+    for height in [0.08_f32, 0.4, 1.04, 1.92] {
+        let sample = |u| square_to_uniform_cone(u, height * (1.0 - 1e-6));
+        let density = |w: Vec3| if 1.0 - w.z <= height { f64::from(uniform_cone_pdf(height)) } else { 0.0 };
+        let p = ChiSquared::over(Domain::Sphere).run(sample, density);
+        assert!(p.is_ok(), "{height}: {p:?}");
+        let too_wide = ChiSquared::over(Domain::Sphere).run(sample, |w| 1.05 * density(w));
+        assert!(too_wide.is_err(), "{height}: {too_wide:?}");
+    }
+    let p = ChiSquared::over(Domain::Sphere).run(square_to_uniform_sphere, |_| f64::from(uniform_sphere_pdf()));
+    assert!(p.is_ok(), "{p:?}");
+    // Narrow ones by their inverse; the sphere's, but near −Z, where the slope has no bound.
+    for height in [1e-12_f32, 1e-6, 0.3, 1.0] {
+        let (map, inverse) = (|u| square_to_uniform_cone(u, height), |w| uniform_cone_to_square(w, height));
+        assert_eq!(round_trip(map, inverse, ROUND_TRIP), Ok(()), "{height}");
+    }
+    let inner = |u: Vec2| square_to_uniform_sphere(0.1 + 0.8 * u);
+    assert_eq!(round_trip(inner, |w| (uniform_sphere_to_square(w) - 0.1) / 0.8, 1e-5), Ok(()));
+    for u in rims() {
+        for height in [1e-30, 1e-9, 0.5, 2.0] {
+            let w = square_to_uniform_cone(u, height);
+            assert!((w.length() - 1.0).abs() < 1e-6 && 1.0 - w.z <= height * 1.000_001 + 1e-7, "{u} {height}: {w}");
+        }
+    }
+}

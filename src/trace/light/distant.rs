@@ -40,7 +40,7 @@ impl DistantDisc {
         Self { axis, illuminance: light.illuminance, half_sin, half_cos: half_cos.max(0.0), is_delta }
     }
 
-    /// Whether no ray meets it by itself.
+    /// Whether it is a single direction, which no ray meets.
     pub(super) fn is_delta(&self) -> bool {
         self.is_delta
     }

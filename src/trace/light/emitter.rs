@@ -133,7 +133,7 @@ impl Emitter {
         Some(weights.map(|weight| weight.clamp(0.0, 1.0) as f32))
     }
 
-    /// What a scene cannot do without being told: flux per channel [lm]. `None` for a lamp with a range, whose flux is
+    /// Flux per channel [lm]. `None` for a lamp with a range, whose flux is
     /// lost on the way, and for a spot light with a size, whose dimming is no radiance that is conserved.
     pub(in crate::trace) fn flux(&self) -> Option<DVec3> {
         let solid_angle = match (self.shape, self.cone) {

@@ -22,6 +22,8 @@ pub(super) struct Environment {
     map: EnvironmentMap,
     world_from_map: DQuat,
     table: Discrete2d,
+    /// Per row, the solid angle of one of its pixels [sr].
+    solid_angles: Vec<f64>,
 }
 
 /// A direction to the sky.
@@ -36,9 +38,15 @@ impl Environment {
     /// `None` for a black sky.
     pub(super) fn new(map: &EnvironmentMap) -> Option<Self> {
         let size = UVec2::new(map.width, map.height);
-        let table = Discrete2d::new(size, |place| weight(map, place)).ok()?;
+        let solid_angle = |row| {
+            let [top, bottom] = heights(row, map.height);
+            (top - bottom) * TAU / f64::from(map.width)
+        };
+        let solid_angles: Vec<f64> = (0..map.height).map(solid_angle).collect();
+        let weight = |place: UVec2| brightness(texel(map, place)) * solid_angles[place.y as usize];
+        let table = Discrete2d::new(size, weight).ok()?;
         let world_from_map = map.world_from_map.as_dquat().normalize();
-        Some(Self { map: map.clone(), world_from_map, table })
+        Some(Self { map: map.clone(), world_from_map, table, solid_angles })
     }
 
     /// The irradiance that it gives to a receiver [lx, as brightness], on average over all that a receiver may face.
@@ -48,7 +56,7 @@ impl Environment {
 
     /// A direction to it.
     pub(super) fn sample(&self, u: Vec2) -> Option<SkySample> {
-        let cell = self.table.sample(u, |place| weight(&self.map, place));
+        let cell = self.table.sample(u, |place| self.weight(place));
         let wi = self.direction(cell.place, cell.remapped);
         // Rounding to f32 can carry a direction over the pixel's rim. What it says there must be what anyone who looks
         // in that direction finds, so nearer to the middle is better, and the neighbour's answer good enough.
@@ -59,6 +67,11 @@ impl Environment {
         };
         let (radiance, pdf) = self.look(wi);
         (pdf > 0.0).then_some(SkySample { wi, radiance, pdf })
+    }
+
+    /// Brightness × solid angle of a pixel [cd/m² sr].
+    fn weight(&self, place: UVec2) -> f64 {
+        brightness(texel(&self.map, place)) * self.solid_angles[place.y as usize]
     }
 
     /// Radiance that arrives against the unit direction `wi` [cd/m²], and the density with which `sample` finds it
@@ -97,16 +110,6 @@ fn heights(row: u32, rows: u32) -> [f64; 2] {
 
 fn texel(map: &EnvironmentMap, place: UVec2) -> Vec3 {
     map.radiance.get(place.y as usize * map.width as usize + place.x as usize).copied().unwrap_or(Vec3::ZERO)
-}
-
-/// Brightness × solid angle of a pixel [cd/m² sr].
-fn weight(map: &EnvironmentMap, place: UVec2) -> f64 {
-    let brightness = brightness(texel(map, place));
-    if brightness == 0.0 {
-        return 0.0;
-    }
-    let [top, bottom] = heights(place.y, map.height);
-    brightness * (top - bottom) * TAU / f64::from(map.width)
 }
 
 #[cfg(test)]

@@ -50,11 +50,6 @@ fn along(origin: Vec3, direction: Vec3, end: f32) -> Way {
     Way { origin, direction, end, passed: 0.0 }
 }
 
-/// Radiance from infinitely far away, all together.
-fn distant_radiance(lights: &Lights, wi: Vec3) -> Vec3 {
-    lights.distant(&free(Vec3::ZERO), wi).map(|met| met.radiance).sum()
-}
-
 fn pdf(emitter: &Emitter, receiver: Vec3, wi: Vec3, distance: f64) -> f64 {
     emitter.solid_angle(receiver, wi, distance as f32).map_or(0.0, f64::recip)
 }
@@ -340,4 +335,19 @@ fn rays_meet_free_sources_where_they_are() {
     };
     assert_eq!((passed(9.0).len(), passed(1.0).len()), (1, 0));
     assert_eq!(passed(9.0)[0].radiance, Vec3::ONE);
+}
+
+/// Weights of vertices at a sampled point are those that lead there.
+#[test]
+fn weights_lead_to_the_point() {
+    let mut random = Random::new(12);
+    for emitter in [rectangle(), triangle()] {
+        let (corner, [u, v]) = axes(&emitter);
+        for _ in 0..100 {
+            let point = target(emitter.sample(RECEIVERS[0], random.square()).expect("both sides shine").end);
+            let [s, t] = emitter.weights_of(point).expect("it is flat");
+            assert!((corner + s * u + t * v - point).length() < 1e-6);
+        }
+    }
+    assert_eq!(source(EmitterShape::Point { centre: Vec3::ZERO }, false).weights_of(Vec3::X), None);
 }

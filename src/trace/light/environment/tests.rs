@@ -113,7 +113,7 @@ fn looking_finds_what_was_sampled() {
                     u = (u * 64.0).floor() / 64.0;
                 }
                 let sample = sky.sample(u).expect("no direction is lost");
-                let cell = sky.table.sample(u, |place| super::weight(&sky.map, place));
+                let cell = sky.table.sample(u, |place| sky.weight(place));
                 strayed += u32::from(sky.pixel(sample.wi) != Some(cell.place));
                 let (radiance, pdf) = sky.look(sample.wi);
                 assert_eq!((radiance, pdf), (sample.radiance, sample.pdf));

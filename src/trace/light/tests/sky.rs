@@ -1,14 +1,15 @@
 //! Discs in the sky and pictures of it: densities, radiance, and what both ways to ask for them agree on.
 
-use super::{along, distant_radiance, free};
+use super::{along, free};
 use crate::artefact::StableId;
 use crate::math::Frame;
 use crate::math::testing::{ChiSquared, Domain, Random, Rejection};
 use crate::scene::{DirectionalLight, EnvironmentMap};
 use crate::trace::light::distant::DistantDisc;
+use crate::trace::light::environment::Environment;
 use crate::trace::light::lights::Parts;
-use crate::trace::light::{Emitter, EmitterShape, End, LightContext, Lights};
-use glam::{Vec2, Vec3};
+use crate::trace::light::{Emitter, EmitterShape, End, LightContext, LightSample, Lights};
+use glam::{Quat, Vec2, Vec3};
 use std::cell::RefCell;
 use std::f32::consts::PI;
 
@@ -85,21 +86,29 @@ fn a_disc_is_as_bright_as_its_illuminance_says() {
             .sum();
         assert!((sum / 20_000.0 - 1.0).abs() < 1e-3, "{diameter}: {sum}");
         let sine = f64::from(0.5 * diameter).sin();
-        let radiance = distant_radiance(&lights, towards_disc()).z;
+        let radiance_of = |wi: Vec3| lights.distant(&ctx, wi).map(|met| met.radiance).sum::<Vec3>();
+        let radiance = radiance_of(towards_disc()).z;
         assert!((f64::from(radiance) * std::f64::consts::PI * sine * sine / 3.0 - 1.0).abs() < 1e-5);
         // Its rim, from both sides.
         let frame = Frame::new(towards_disc());
         for turn in 0..7 {
             let aside = Vec2::from_angle(turn as f32);
             let at = |angle: f32| frame.world_from_local((aside * angle.sin()).extend(angle.cos()));
-            assert_ne!(distant_radiance(&lights, at(0.499 * diameter)), Vec3::ZERO);
-            assert_eq!(distant_radiance(&lights, at(0.501 * diameter)), Vec3::ZERO);
+            assert_ne!(radiance_of(at(0.499 * diameter)), Vec3::ZERO);
+            assert_eq!(radiance_of(at(0.501 * diameter)), Vec3::ZERO);
         }
     }
     let lone = Lights::new(Parts { distant: vec![disc(0.0)], ..Parts::default() });
     let sample = lone.sample(&free(Vec3::ZERO), Vec2::ZERO, 0.0).expect("it shines");
     assert_eq!((sample.pdf, sample.value), (None, Vec3::new(1.0, 2.0, 3.0)));
     assert!(sample.wi.distance(towards_disc()) < 1e-6 && lone.distant(&free(Vec3::ZERO), sample.wi).next().is_none());
+}
+
+/// A picture of the sky with some black in it.
+fn patches() -> Option<Environment> {
+    let radiance = (0..32).map(|i| Vec3::splat((i * 5 % 7) as f32 * 0.1)).collect();
+    let world_from_map = Quat::from_rotation_x(0.4);
+    Environment::new(&EnvironmentMap { name: "sky".into(), width: 8, height: 4, radiance, world_from_map })
 }
 
 /// Light sampling among a lamp, two suns and a picture of the sky, from a floor that one of the suns half rises over.
@@ -116,20 +125,7 @@ fn mixed() -> Lights {
         illuminance: Vec3::ONE,
         angular_diameter: 0.6,
     });
-    let radiance = (0..32).map(|i| Vec3::splat((i * 5 % 7) as f32 * 0.1)).collect();
-    let map = EnvironmentMap {
-        name: "sky".into(),
-        width: 8,
-        height: 4,
-        radiance,
-        world_from_map: glam::Quat::from_rotation_x(0.4),
-    };
-    Lights::new(Parts {
-        emitters: vec![lamp],
-        free: vec![0],
-        distant: vec![disc(0.4), low],
-        environment: crate::trace::light::environment::Environment::new(&map),
-    })
+    Lights::new(Parts { emitters: vec![lamp], free: vec![0], distant: vec![disc(0.4), low], environment: patches() })
 }
 
 /// The densities that rays find, weighted per source: the lamp, the suns in their order, the sky.
@@ -169,7 +165,7 @@ fn the_choice_between_lamp_suns_and_sky_follows_its_density() {
     let lights = mixed();
     let ctx = LightContext { position: Vec3::new(0.1, 0.0, 0.2), normal: Some(Vec3::Y) };
     let lamp = lights.chance(0, &ctx);
-    let counts = |share: &dyn Fn(&crate::trace::light::LightSample) -> bool| {
+    let counts = |share: &dyn Fn(&LightSample) -> bool| {
         let mut random = Random::new(8);
         (0..20_000).filter(|_| share(&lights.sample(&ctx, random.square(), random.unit()).expect("all shine"))).count()
     };
@@ -185,19 +181,7 @@ fn the_choice_between_lamp_suns_and_sky_follows_its_density() {
 fn sky_chance(lights: &Lights, ctx: &LightContext) -> f64 {
     let wi = Vec3::new(-0.3, -0.5, -0.2).normalize();
     let met = lights.distant(ctx, wi).next().expect("the sky shines from below too");
-    let alone = Lights::new(Parts { environment: Some(sky_of(lights)), ..Parts::default() });
+    let alone = Lights::new(Parts { environment: patches(), ..Parts::default() });
     let own = alone.distant(ctx, wi).next().expect("the sky shines from below too");
     f64::from(met.pdf) / f64::from(own.pdf)
-}
-
-fn sky_of(_: &Lights) -> crate::trace::light::environment::Environment {
-    let radiance = (0..32).map(|i| Vec3::splat((i * 5 % 7) as f32 * 0.1)).collect();
-    let map = EnvironmentMap {
-        name: "sky".into(),
-        width: 8,
-        height: 4,
-        radiance,
-        world_from_map: glam::Quat::from_rotation_x(0.4),
-    };
-    crate::trace::light::environment::Environment::new(&map).expect("it shines")
 }
