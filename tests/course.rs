@@ -1,5 +1,5 @@
 //! What the course teaches, held against closed forms, and the product against the course's own small path tracer
-//! (`examples/course/teacher.rs`), which shares the rays with it and neither sampling nor random numbers.
+//! (`examples/course/teacher.rs`), which shares its rays and neither its light sampling nor its random numbers.
 //!
 //! docs/course.md names these tests topic by topic.
 

@@ -2,7 +2,8 @@
 //!
 //! It offers what the product leaves out on purpose, because it is slower or wrong: three ways to choose directions,
 //! three ways to end a path, and two planted faults. What of it is right is a second opinion on the product, which
-//! `tests/course.rs` asks for: it shares the rays and neither sampling, nor roulette, nor random numbers.
+//! `tests/course.rs` asks for: it shares the rays and the maps, and neither light sampling, roulette, ray origins nor
+//! random numbers.
 //!
 //! Diffuse surfaces only; light is found by meeting it. A hit does not say what was hit, so a closure tells the
 //! surface by the point.
@@ -131,6 +132,18 @@ impl Ending {
             Self::Roulette => (random.unit() < survival).then(|| survival.recip()),
             Self::RouletteWithoutWeight => (random.unit() < survival).then_some(1.0),
         }
+    }
+}
+
+/// ∫₀² 3 sin x dx, the course's worked example: one sample by a uniform x. A cap keeps every sample; roulette keeps it
+/// with the chance `survival`.
+pub fn integral_sample(ending: Ending, survival: f64, random: &mut Random) -> f64 {
+    let value = 6.0 * (2.0 * f64::from(random.unit())).sin();
+    match ending {
+        Ending::Cap(_) => value,
+        _ if f64::from(random.unit()) >= survival => 0.0,
+        Ending::Roulette => value / survival,
+        Ending::RouletteWithoutWeight => value,
     }
 }
 

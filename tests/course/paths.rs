@@ -3,7 +3,7 @@
 use crate::common::meter::{at, mean, on_walls, read};
 use crate::common::statistics::mean_within;
 use crate::scenes::{cornell, cornell_patch, furnace};
-use crate::teacher::{Directions, Ending, Patch, Random, Teacher, moments};
+use crate::teacher::{Directions, Ending, Patch, Teacher, integral_sample, moments};
 use bevy_kiln::bake::{MeterPoint, MeterReading};
 use bevy_kiln::math::{Frame, Welford};
 use bevy_kiln::scene::Scene;
@@ -40,12 +40,10 @@ fn what_three_ways_to_choose_directions_cost() {
 fn roulette_on_an_integral() {
     let survival = 0.6_f64;
     let truth = 3.0 * (1.0 - 2.0_f64.cos());
-    let value = |random: &mut Random| 6.0 * (2.0 * f64::from(random.unit())).sin();
-    let lives = |random: &mut Random| f64::from(random.unit()) < survival;
     let count = 200_000;
-    let plain = moments(count, 1, value);
-    let weighted = moments(count, 2, |random| if lives(random) { value(random) / survival } else { 0.0 });
-    let unweighted = moments(count, 3, |random| if lives(random) { value(random) } else { 0.0 });
+    let endings = [Ending::Cap(0), Ending::Roulette, Ending::RouletteWithoutWeight];
+    let [plain, weighted, unweighted] =
+        endings.map(|ending| moments(count, 4, |random| integral_sample(ending, survival, random)));
     // E[X²] of one plain value; roulette divides it by p, its weight left out multiplies it by p.
     let square = 18.0 * (1.0 - 4.0_f64.sin() / 4.0);
     let expected = [

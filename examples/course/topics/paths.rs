@@ -3,7 +3,7 @@
 use crate::Desk;
 use crate::film::{Shot, mean_luminance, rms_error, row};
 use crate::scenes;
-use crate::teacher::{Directions, Ending, Patch, Random, Teacher};
+use crate::teacher::{Directions, Ending, Patch, Random, Teacher, integral_sample, moments};
 use bevy_kiln::bake::Picture;
 use bevy_kiln::math::Welford;
 use bevy_kiln::scene::{Camera, Scene};
@@ -58,6 +58,11 @@ fn spread(directions: Directions, radiance: Sky) -> String {
 
 /// Paths that end by chance, with and without the weight, against a cap.
 pub fn roulette(desk: &Desk) {
+    for ending in [Ending::Cap(0), Ending::Roulette, Ending::RouletteWithoutWeight] {
+        let values = moments(200_000, 4, |random| integral_sample(ending, 0.6, random));
+        let (mean, error) = (values.mean(), values.standard_error());
+        desk.say(&format!("the integral, {ending:?}: {mean:.3} ± {error:.4}"));
+    }
     let (scene, camera) = (scenes::cornell(), scenes::cornell_camera());
     let tracer = Tracer::new(&scene);
     let endings = [Ending::Roulette, Ending::RouletteWithoutWeight, Ending::Cap(50)];
