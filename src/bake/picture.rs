@@ -63,7 +63,7 @@ pub fn render_picture(
     }
     let workers = Workers::new(settings.threads, progress, cancel)?;
     workers.announce(Stage::Prepare)?;
-    let Compiled { tracer, faults, census } = Compiled::new(scene, &settings.transport);
+    let Compiled { tracer, faults, census } = Compiled::for_camera(scene, &settings.transport);
     let eye = Vec3::from(camera.world_from_camera.translation);
     let pixels: Vec<u32> = (0..width * height).collect();
     let work = workers.gather(

@@ -7,8 +7,12 @@ use std::num::NonZeroUsize;
 use std::sync::Mutex;
 use std::time::Duration;
 
-/// Items that one thread takes at a time: few enough to share out evenly, many enough to keep neighbours together.
-const CHUNK: usize = 32;
+/// The most items that one thread takes at a time: few enough to share out evenly, many enough to keep neighbours
+/// together.
+const LARGEST_CHUNK: usize = 32;
+
+/// How many times a thread should come back for more, so that all end at about the same time.
+const TURNS: usize = 8;
 
 /// Threads, and whom they answer to.
 pub(super) struct Workers<'a> {
@@ -66,7 +70,8 @@ impl<'a> Workers<'a> {
             self.tell(&tally, items.len(), &results, clock.elapsed(), &error);
             Some(results)
         };
-        let chunks: Option<Vec<Vec<T>>> = self.pool.install(|| items.par_chunks(CHUNK).map(chunk_of).collect());
+        let chunk = (items.len() / (TURNS * self.pool.current_num_threads())).clamp(1, LARGEST_CHUNK);
+        let chunks: Option<Vec<Vec<T>>> = self.pool.install(|| items.par_chunks(chunk).map(chunk_of).collect());
         let results = chunks.ok_or(BakeError::Cancelled)?.into_iter().flatten().collect();
         let cpu = tally.lock().map_or(Duration::ZERO, |tally| tally.cpu);
         Ok(Work { results, cpu })

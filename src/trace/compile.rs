@@ -6,6 +6,7 @@ mod world;
 
 use super::census::{Census, Counted, effect_of};
 use super::effects::Effect;
+use super::material::View;
 use super::tracer::Tracer;
 use super::transport::Transport;
 use crate::scene::{Fault, Light, Scene};
@@ -22,18 +23,30 @@ pub(crate) struct Compiled {
     pub(crate) census: Census,
 }
 
+/// What a scene is compiled for.
+struct Purpose<'a> {
+    has_camera: bool,
+    /// A tracer of the same scene whose tree can be shared.
+    tree_of: Option<&'a Tracer>,
+}
+
 impl Compiled {
     /// Compiles what is sound in a scene, for the effects that it calls for and those that are forced.
     pub(crate) fn new(scene: &Scene, transport: &Transport) -> Self {
-        Self::with_tree(scene, transport, None)
+        Self::compile(scene, transport, Purpose { has_camera: false, tree_of: None })
+    }
+
+    /// The same for rays that start at a camera.
+    pub(crate) fn for_camera(scene: &Scene, transport: &Transport) -> Self {
+        Self::compile(scene, transport, Purpose { has_camera: true, tree_of: None })
     }
 
     /// The same scene for other effects, with the tree of another tracer of it.
     pub(crate) fn sharing_tree(scene: &Scene, transport: &Transport, other: &Tracer) -> Self {
-        Self::with_tree(scene, transport, Some(other))
+        Self::compile(scene, transport, Purpose { has_camera: false, tree_of: Some(other) })
     }
 
-    fn with_tree(scene: &Scene, transport: &Transport, other: Option<&Tracer>) -> Self {
+    fn compile(scene: &Scene, transport: &Transport, purpose: Purpose<'_>) -> Self {
         let faults = scene.validate();
         let sound = Sound::new(scene, &faults);
         let mut instances: Vec<usize> = (0..scene.instances.len()).filter(|&index| sound.instances[index]).collect();
@@ -51,7 +64,8 @@ impl Compiled {
         };
         let mut census = Census::take(&counted, transport);
         let effects = transport.effects.apply(census.called());
-        let mut world = World::new(scene, &sound, &instances, effects);
+        let view = View { effects, has_camera: purpose.has_camera };
+        let mut world = World::new(scene, &sound, &instances, view);
         for index in instances {
             world.add_instance(scene, index, sound.lightmaps[index]);
         }
@@ -68,7 +82,7 @@ impl Compiled {
         }
         let sky_radiance = if effects.has(Effect::ConstantSky) { sky_radiance } else { Vec3::ZERO };
         census.count_shapes(world.shape_count());
-        Self { tracer: world.into_tracer(sky_radiance, other), faults, census }
+        Self { tracer: world.into_tracer(sky_radiance, purpose.tree_of), faults, census }
     }
 }
 

@@ -7,6 +7,14 @@ use super::surface::TriangleShape;
 use crate::scene::{Alpha, Interior, Material, Mesh, NormalMap, Scattering, Standard, TextureRef};
 use glam::{Affine2, Vec3, Vec4};
 
+/// What a material is compiled for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct View {
+    pub(super) effects: EffectSet,
+    /// Whether a camera looks at it, to which a diffuse surface shows its smooth normals, as its lightmap has them.
+    pub(super) has_camera: bool,
+}
+
 /// A compiled material.
 #[derive(Clone, Debug)]
 pub(super) struct Surface {
@@ -70,12 +78,18 @@ impl Surface {
         own.into_iter().chain(standard.into_iter().flatten()).flatten()
     }
 
+    /// Whether shading normals change the light that it sends on: a diffuse surface spreads it evenly whatever they
+    /// are, and the flat normal then loses none.
+    pub(super) fn is_shaded(&self) -> bool {
+        !matches!(self.scattering, Scattering::None | Scattering::Diffuse) || self.normal_map.is_some()
+    }
+
     /// What it needs of the vertices of a mesh.
-    pub(super) fn needs(&self, mesh: &Mesh, effects: EffectSet) -> Needs {
-        let is_shaded = !matches!(self.scattering, Scattering::None | Scattering::Diffuse) || self.normal_map.is_some();
+    pub(super) fn needs(&self, mesh: &Mesh, view: View) -> Needs {
+        let View { effects, has_camera } = view;
         let needs = Needs {
             colours: mesh.colours.is_some() && effects.has(Effect::Textures),
-            normals: is_shaded && mesh.normals.is_some(),
+            normals: (has_camera || self.is_shaded()) && mesh.normals.is_some(),
             tangents: self.normal_map.map(|map| map.texture.uv),
             ..Needs::default()
         };
@@ -246,7 +260,7 @@ mod tests {
         let effects = EffectSet::NONE.with(Effect::Textures);
         let surface = Surface::new(&cut, effects);
         assert!(!surface.passes && surface.base_colour_texture == map);
-        assert!(surface.needs(&Mesh::default(), effects).uv1);
+        assert!(surface.needs(&Mesh::default(), View { effects, has_camera: false }).uv1);
         assert!(Surface::new(&cut, EffectSet::NONE).textures().next().is_none());
     }
 

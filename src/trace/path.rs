@@ -33,7 +33,7 @@ impl Tracer {
         transport: &Transport,
         rays: &mut u64,
     ) -> Vec3 {
-        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, rays).from_receiver(start))
+        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, rays).receive(start))
     }
 
     /// Radiance that arrives against `direction` at `origin`, along a camera's ray [cd/m²]. Lights that are no
@@ -47,7 +47,7 @@ impl Tracer {
         rays: &mut u64,
     ) -> Vec3 {
         let ray = Ray::of_camera(origin, direction);
-        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, rays).along(ray))
+        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, rays).look_along(ray))
     }
 }
 

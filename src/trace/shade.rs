@@ -178,6 +178,13 @@ impl Tracer {
         if normal.dot(wo) > 0.0 && normal.dot(geometric) > 0.0 { Frame::new(normal) } else { Frame::new(geometric) }
     }
 
+    /// The frame of a diffuse surface that a camera sees: around the smooth normal, as its lightmap has it.
+    pub(super) fn seen_frame(&self, place: Place, geometric: Vec3, wo: Vec3) -> Frame {
+        let smooth = self.attributes.normal(place.triangle, place.barycentric);
+        let smooth = smooth.filter(|normal| normal.dot(geometric) > 0.0 && normal.dot(wo) > 0.0);
+        Frame::new(smooth.unwrap_or(geometric))
+    }
+
     /// The normal that a map makes of `normal`, which stands on the viewer's side.
     fn mapped_normal(&self, surface: &Surface, place: Place, normal: Vec3, side: f32) -> Vec3 {
         let Some(map) = surface.normal_map else { return normal };

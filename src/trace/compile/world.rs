@@ -6,10 +6,9 @@ use crate::scene::{EnvironmentMap, Instance, Light, Mesh, Scene};
 use crate::trace::accel::Accel;
 use crate::trace::attributes::{Attributes, Needs};
 use crate::trace::bsdf::AlbedoTables;
-use crate::trace::effects::EffectSet;
 use crate::trace::kernel::{LAYERED, TEXTURED, kernel_for};
 use crate::trace::light::{Emitter, EmitterShape, Sources};
-use crate::trace::material::Surface;
+use crate::trace::material::{Surface, View};
 use crate::trace::sampler::{Dimensions, Sampler, Sobol};
 use crate::trace::shade::Place;
 use crate::trace::surface::{Placement, TriangleShape};
@@ -27,18 +26,19 @@ const LEAST_GLOW: f32 = 1e-3;
 
 /// The parts of a tracer as they come together.
 pub(super) struct World {
-    effects: EffectSet,
+    view: View,
     tracer: Tracer,
     sources: Sources,
     shapes: u64,
 }
 
 impl World {
-    pub(super) fn new(scene: &Scene, sound: &Sound, instances: &[usize], effects: EffectSet) -> Self {
+    pub(super) fn new(scene: &Scene, sound: &Sound, instances: &[usize], view: View) -> Self {
+        let effects = view.effects;
         let surfaces: Vec<Surface> = scene.materials.iter().map(|material| Surface::new(material, effects)).collect();
         let of = |index: &usize| &scene.instances[*index];
         let needs = instances.iter().map(of).fold(Needs::default(), |needs, instance| {
-            needs.and(surfaces[instance.material].needs(&scene.meshes[instance.mesh], effects))
+            needs.and(surfaces[instance.material].needs(&scene.meshes[instance.mesh], view))
         });
         // What no surface in use looks up is not decoded.
         let mut textures: Vec<Option<Decoded>> = vec![None; scene.textures.len()];
@@ -65,7 +65,7 @@ impl World {
             effects,
             kernel,
         };
-        Self { effects, tracer, sources: Sources::default(), shapes: 0 }
+        Self { view, tracer, sources: Sources::default(), shapes: 0 }
     }
 
     pub(super) fn add_instance(&mut self, scene: &Scene, index: usize, has_lightmap: bool) {
@@ -82,7 +82,7 @@ impl World {
             tracer.triangles.push(shape);
             vertices.push(if placement.is_mirrored() { [a, c, b] } else { [a, b, c] });
         }
-        let needs = tracer.surfaces[instance.material].needs(mesh, self.effects);
+        let needs = tracer.surfaces[instance.material].needs(mesh, self.view);
         tracer.attributes.add(mesh, &placement, &vertices, needs);
         let count = tracer.triangles.len() - first;
         tracer.surface_of.extend(std::iter::repeat_n(instance.material as u32, count));

@@ -87,7 +87,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
     }
 
     /// E/π at a receiver, by one path.
-    pub(super) fn from_receiver(mut self, start: &PathStart) -> Vec3 {
+    pub(super) fn receive(mut self, start: &PathStart) -> Vec3 {
         let lambert = Lambert { albedo: Vec3::ONE };
         let vertex = Vertex {
             position: start.position,
@@ -105,7 +105,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
     }
 
     /// Radiance that arrives against a camera's ray, by one path.
-    pub(super) fn along(mut self, ray: Ray) -> Vec3 {
+    pub(super) fn look_along(mut self, ray: Ray) -> Vec3 {
         if let Some(vertex) = self.arrive(&ray) {
             self.go_on(vertex);
         }
@@ -210,7 +210,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         if ray.survival.is_some() && self.max_bounces.is_some_and(|cap| self.number >= cap) {
             return None;
         }
-        let vertex = self.vertex(shape, place, ray.direction);
+        let vertex = self.vertex(shape, place, ray);
         let albedo = if K & LAYERED == 0 { vertex.lambert.albedo } else { vertex.bsdf.albedo(vertex.wo) };
         let carried = (self.throughput * albedo).max_element();
         if carried <= 0.0 {
@@ -228,8 +228,9 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
 
     /// What a ray finds where it meets a triangle.
     #[inline]
-    fn vertex(&self, shape: &'t TriangleShape, place: Place, direction: Vec3) -> Vertex<'t> {
+    fn vertex(&self, shape: &'t TriangleShape, place: Place, ray: &Ray) -> Vertex<'t> {
         let tracer = self.tracer;
+        let direction = ray.direction;
         let surface = tracer.surface(place.triangle);
         let start = PathStart::new(shape, shape.position(place.barycentric), -direction);
         if K & LAYERED == 0 {
@@ -238,7 +239,10 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
                 position: start.position,
                 origin: start.origin,
                 geometric_normal: start.geometric_normal,
-                frame: Frame::new(start.geometric_normal),
+                frame: match ray.survival {
+                    Some(_) => Frame::new(start.geometric_normal),
+                    None => tracer.seen_frame(place, start.geometric_normal, -direction),
+                },
                 wo: Vec3::Z,
                 lambert,
                 bsdf: Bsdf::None,
@@ -247,7 +251,13 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             };
         }
         let side = if shape.normal.dot(direction) < 0.0 { 1.0 } else { -1.0 };
-        let frame = tracer.shading_frame(surface, place, start.geometric_normal, -direction, side);
+        let frame = if surface.is_shaded() {
+            tracer.shading_frame(surface, place, start.geometric_normal, -direction, side)
+        } else if ray.survival.is_none() {
+            tracer.seen_frame(place, start.geometric_normal, -direction)
+        } else {
+            Frame::new(start.geometric_normal)
+        };
         Vertex {
             position: start.position,
             origin: start.origin,
