@@ -3,6 +3,8 @@
 
 #[path = "support/glb.rs"]
 mod glb;
+#[path = "cli/punctual.rs"]
+mod punctual;
 #[path = "cli/skies.rs"]
 mod skies;
 

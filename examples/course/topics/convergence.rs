@@ -8,7 +8,7 @@ use bevy_kiln::trace::Transport;
 use glam::Vec3;
 
 /// Paths through a pixel of the whole box.
-const WHOLE: [u32; 3] = [10, 100, 1000];
+const WHOLE: [u32; 4] = [10, 100, 1000, 10_000];
 
 /// Paths through a pixel of the piece; the last is the reference.
 const PIECE: [u32; 6] = [10, 100, 1000, 10_000, 100_000, 1_000_000];
