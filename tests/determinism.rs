@@ -4,6 +4,7 @@ mod common;
 
 use bevy_kiln::bake::{BakeSettings, CancelToken, Layout, Lightmap, bake_lightmap};
 use bevy_kiln::scene::Scene;
+use common::garden::garden;
 use common::glb;
 use std::num::NonZeroUsize;
 
@@ -59,6 +60,24 @@ fn shuffled_meshes_materials_and_instances() {
     for layout in [Layout::Packed, Layout::Shared { size: 64 }] {
         assert_same(&bake(&scene, 2, layout), &bake(&shuffled, 2, layout));
     }
+}
+
+/// The same for a scene with something of nearly every effect, its lights and textures in another order too.
+#[test]
+fn a_garden_is_the_same_on_any_threads_and_in_any_order() {
+    let scene = garden();
+    let one = bake(&scene, 1, Layout::Packed);
+    assert!(one.report.texels > 30 && one.report.relative_stderr.mean > 0.0);
+    assert_same(&one, &bake(&scene, 2, Layout::Packed));
+    assert_same(&one, &bake(&scene, 7, Layout::Packed));
+    let mut shuffled = scene.clone();
+    shuffled.lights.reverse();
+    shuffled.materials.rotate_left(2);
+    shuffled.instances.reverse();
+    for instance in &mut shuffled.instances {
+        instance.material = (instance.material + scene.materials.len() - 2) % scene.materials.len();
+    }
+    assert_same(&one, &bake(&shuffled, 2, Layout::Packed));
 }
 
 #[test]
