@@ -83,7 +83,8 @@ fn glass(interior: Interior) -> Standard {
 
 /// Puts a picture on every material; alpha 1 and 0 in stripes, normals about straight.
 fn paint(scene: &mut Scene, use_it: impl Fn(&mut Material, TextureRef)) {
-    let texel = |i: u32| [118 + (i * 7 % 20) as u8, 118 + (i * 3 % 20) as u8, 250, if i % 4 == 0 { 255 } else { 0 }];
+    let texel =
+        |i: u32| [118 + (i * 7 % 20) as u8, 118 + (i * 3 % 20) as u8, 250, if i.is_multiple_of(4) { 255 } else { 0 }];
     scene.textures = vec![Texture {
         name: "stripes".into(),
         width: 64,

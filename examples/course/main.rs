@@ -11,7 +11,7 @@ mod teacher;
 mod topics;
 
 use bevy_kiln::bake::Picture;
-use bevy_kiln::output::write_picture;
+use bevy_kiln::output::{Look, ToneCurve, write_picture};
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -35,7 +35,7 @@ impl Desk {
     /// Keeps a picture in which `white` [cd/m²] is shown as white.
     pub fn keep(&self, name: &str, picture: &Picture, white: f32) {
         let path = self.out.join(name).with_extension("png");
-        match write_picture(picture, &path, (white / 1.2).log2()) {
+        match write_picture(picture, &path, Look { ev100: (white / 1.2).log2(), tone: ToneCurve::Clip }) {
             Ok(()) => self.say(&format!("wrote {}", path.display())),
             Err(error) => {
                 eprintln!("course: {error}");

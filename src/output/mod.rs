@@ -16,6 +16,7 @@ mod safe_write;
 #[cfg(test)]
 mod test_pages;
 mod texels;
+mod tone;
 
 pub use error::OutputError;
 pub use format::{OutputFormat, TexelFormat, UnknownFormat};
@@ -23,3 +24,4 @@ pub use ktx2::ktx2_bytes;
 pub use lightmap::{WrittenLightmap, write_lightmap};
 pub use picture::write_picture;
 pub use texels::{Encoded, texel_bytes};
+pub use tone::{Look, ToneCurve};

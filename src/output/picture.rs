@@ -1,7 +1,7 @@
 //! A rendered picture as a file, in the format that its name asks for.
 
 use super::safe_write::{Staged, make_folder};
-use super::{OutputError, exr, png};
+use super::{Look, OutputError, exr, png};
 use crate::bake::Picture;
 use std::path::Path;
 
@@ -12,18 +12,17 @@ enum PictureFormat {
     Exr,
 }
 
-/// Writes a picture, in place of what has that name: `.png` exposed at `ev100`, clipped and sRGB-encoded, without a
-/// tone curve; `.exr` linear radiance and its standard error [cd/m²], for which `ev100` does not matter. Folders
-/// that are missing are made.
-pub fn write_picture(picture: &Picture, path: &Path, ev100: f32) -> Result<(), OutputError> {
+/// Writes a picture, in place of what has that name: `.png` as it looks, sRGB-encoded; `.exr` linear radiance and its
+/// standard error [cd/m²], for which the look does not matter. Folders that are missing are made.
+pub fn write_picture(picture: &Picture, path: &Path, look: Look) -> Result<(), OutputError> {
     let format = picture_format(path)?;
     check(picture, path)?;
-    if matches!(format, PictureFormat::Png) && !ev100.is_finite() {
-        return Err(OutputError::Exposure { path: path.to_owned(), ev100 });
+    if matches!(format, PictureFormat::Png) && !look.ev100.is_finite() {
+        return Err(OutputError::Exposure { path: path.to_owned(), ev100: look.ev100 });
     }
     make_folder(path.parent().unwrap_or(Path::new("")))?;
     let staged = Staged::write(path, |file| match format {
-        PictureFormat::Png => png::write_picture(picture, ev100, file),
+        PictureFormat::Png => png::write_picture(picture, look, file),
         PictureFormat::Exr => exr::write_picture(picture, file),
     })?;
     staged.place()?;
@@ -58,6 +57,12 @@ fn check(picture: &Picture, path: &Path) -> Result<(), OutputError> {
 mod tests {
     use super::*;
     use crate::bake::BakeReport;
+    use crate::output::ToneCurve;
+
+    fn look(ev100: f32) -> Look {
+        Look { ev100, tone: ToneCurve::Clip }
+    }
+
     use glam::Vec3;
     use std::fs;
 
@@ -71,12 +76,12 @@ mod tests {
         let folder = temp_dir::TempDir::new().unwrap();
         for (name, start) in [("deep/er/a.png", &b"\x89PNG"[..]), ("b.EXR", &[0x76, 0x2f, 0x31, 0x01])] {
             let path = folder.path().join(name);
-            write_picture(&picture(), &path, 0.0).unwrap();
+            write_picture(&picture(), &path, look(0.0)).unwrap();
             assert!(fs::read(&path).unwrap().starts_with(start), "{name}");
         }
         for name in ["a.jpg", "png", "a."] {
             let path = folder.path().join(name);
-            assert_eq!(write_picture(&picture(), &path, 0.0), Err(OutputError::UnknownPicture { path }));
+            assert_eq!(write_picture(&picture(), &path, look(0.0)), Err(OutputError::UnknownPicture { path }));
         }
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2, "nothing else was left");
     }
@@ -85,12 +90,12 @@ mod tests {
     fn what_makes_no_picture_is_refused_by_name() {
         let folder = temp_dir::TempDir::new().unwrap();
         let path = folder.path().join("a.png");
-        let error = write_picture(&picture(), &path, f32::INFINITY).unwrap_err();
+        let error = write_picture(&picture(), &path, look(f32::INFINITY)).unwrap_err();
         assert_eq!(error, OutputError::Exposure { path: path.clone(), ev100: f32::INFINITY });
         let short = Picture { height: 3, ..picture() };
-        assert!(matches!(write_picture(&short, &path, 0.0), Err(OutputError::Malformed { .. })));
+        assert!(matches!(write_picture(&short, &path, look(0.0)), Err(OutputError::Malformed { .. })));
         let empty = Picture { width: 0, radiance: vec![], stderr: vec![], ..picture() };
-        assert!(matches!(write_picture(&empty, &path, 0.0), Err(OutputError::Malformed { .. })));
+        assert!(matches!(write_picture(&empty, &path, look(0.0)), Err(OutputError::Malformed { .. })));
         assert!(!path.exists());
     }
 }

@@ -1,7 +1,8 @@
-//! Eight-bit pictures for a person to look at: exposed, clipped, sRGB. Nothing is measured on them, so there is no
-//! tone curve beside the exposure.
+//! Eight-bit pictures for a person to look at: exposed, through a tone curve or clipped, sRGB. Nothing is measured on
+//! them.
 
 use super::texels::clamp;
+use super::tone::{Look, ToneCurve};
 use crate::bake::{Page, Picture};
 use glam::Vec3;
 use image::codecs::png::PngEncoder;
@@ -19,17 +20,16 @@ pub(super) fn write_preview(page: &Page, to: impl Write) -> io::Result<()> {
     let exposure = preview_exposure(page);
     let pixels = page.radiance.iter().zip(&page.coverage).flat_map(|(&radiance, &coverage)| {
         let shown = if coverage > 0.0 { radiance } else { Vec3::ZERO };
-        pixel(shown, exposure)
+        pixel(shown, exposure, ToneCurve::Clip)
     });
     write_rgb(page.width, page.height, pixels.collect(), to)
 }
 
-/// A picture as a camera at this exposure value shows it: 1 is 1.2 · 2^EV100 cd/m² (Lagarde and de Rousiers 2014,
-/// Moving Frostbite to Physically Based Rendering, section 5.1.2), as in Bevy.
-pub(super) fn write_picture(picture: &Picture, ev100: f32, to: impl Write) -> io::Result<()> {
+/// A picture as a camera shows it.
+pub(super) fn write_picture(picture: &Picture, look: Look, to: impl Write) -> io::Result<()> {
     // Twice the precision: an exposure value far from a camera's own must not overflow.
-    let exposure = 1.0 / (1.2 * 2.0_f64.powf(f64::from(ev100)));
-    let pixels = picture.radiance.iter().flat_map(|&radiance| pixel(radiance, exposure));
+    let exposure = 1.0 / (1.2 * 2.0_f64.powf(f64::from(look.ev100)));
+    let pixels = picture.radiance.iter().flat_map(|&radiance| pixel(radiance, exposure, look.tone));
     write_rgb(picture.width, picture.height, pixels.collect(), to)
 }
 
@@ -49,8 +49,9 @@ fn preview_exposure(page: &Page) -> f64 {
 }
 
 /// A pixel of a radiance.
-fn pixel(radiance: Vec3, exposure: f64) -> [u8; 3] {
-    radiance.to_array().map(|channel| to_srgb((f64::from(clamp(channel, f32::MAX)) * exposure) as f32))
+fn pixel(radiance: Vec3, exposure: f64, tone: ToneCurve) -> [u8; 3] {
+    let exposed = radiance.to_array().map(|channel| (f64::from(clamp(channel, f32::MAX)) * exposure) as f32);
+    tone.apply(Vec3::from_array(exposed)).to_array().map(to_srgb)
 }
 
 /// The eight-bit code of a linear value, clipped to [0, 1] (IEC 61966-2-1:1999).
@@ -108,7 +109,7 @@ mod tests {
         let mut picture = Picture { width: 4, height: 1, radiance, stderr, report: BakeReport::default() };
         let exposed = |picture: &Picture, ev100: f32| {
             let mut png = Vec::new();
-            write_picture(picture, ev100, &mut png).unwrap();
+            write_picture(picture, Look { ev100, tone: ToneCurve::Clip }, &mut png).unwrap();
             decode(&png).2
         };
         assert_eq!(exposed(&picture, 0.0), [[255; 3], [188, 0, 255], [0; 3], [3; 3]]);

@@ -1,7 +1,7 @@
 //! The command line as data.
 
 use crate::parse;
-use bevy_kiln::output::OutputFormat;
+use bevy_kiln::output::{OutputFormat, ToneCurve};
 use bevy_kiln::plugin::EmissiveUnit;
 use bevy_kiln::trace::Effect;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -92,6 +92,26 @@ pub(crate) enum EstimatorArg {
     Light,
     /// Directions from the surface only
     Bsdf,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum ToneArg {
+    /// Clip it: for comparisons
+    None,
+    /// Reinhard's curve on luminance
+    Reinhard,
+    /// The Academy's film curve
+    Aces,
+}
+
+impl From<ToneArg> for ToneCurve {
+    fn from(tone: ToneArg) -> Self {
+        match tone {
+            ToneArg::None => Self::Clip,
+            ToneArg::Reinhard => Self::Reinhard,
+            ToneArg::Aces => Self::Aces,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -203,6 +223,9 @@ pub(crate) struct RenderArgs {
     /// Exposure of a .png: the camera's exposure value at ISO 100
     #[arg(long, value_name = "EV", default_value_t = 9.7, allow_hyphen_values = true)]
     pub(crate) ev100: f32,
+    /// What becomes of what is brighter than a screen in a .png; the names are Bevy's
+    #[arg(long, value_enum, default_value_t = ToneArg::Aces)]
+    pub(crate) tonemapping: ToneArg,
     #[arg(long, hide = true)]
     pub(crate) error: Option<String>,
     #[arg(long, hide = true)]

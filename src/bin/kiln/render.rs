@@ -6,7 +6,7 @@ use crate::progress::Show;
 use crate::scene;
 use crate::talk::{Talk, warn};
 use bevy_kiln::bake::{CancelToken, PictureSettings, render_picture};
-use bevy_kiln::output::write_picture;
+use bevy_kiln::output::{Look, write_picture};
 use bevy_kiln::scene::{Camera, Scene};
 
 pub(crate) fn run(args: &RenderArgs, cancel: &CancelToken) -> Result<(), Failure> {
@@ -35,7 +35,8 @@ pub(crate) fn run(args: &RenderArgs, cancel: &CancelToken) -> Result<(), Failure
         return Err(Failure::Stopped);
     }
     warn(&picture.report.warnings.iter().map(ToString::to_string).collect::<Vec<_>>());
-    write_picture(&picture, &args.output, args.ev100).map_err(Failure::failed)?;
+    write_picture(&picture, &args.output, Look { ev100: args.ev100, tone: args.tonemapping.into() })
+        .map_err(Failure::failed)?;
     Talk::Out.report("pixels", &picture.report);
     Talk::Out.say(format_args!("wrote {}", args.output.display()));
     Ok(())
