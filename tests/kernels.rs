@@ -3,13 +3,14 @@
 mod common;
 
 use bevy_kiln::bake::{BakePlan, BakeSettings};
-use bevy_kiln::scene::{Material, Scattering, Scene, Standard};
+use bevy_kiln::scene::{Interior, Material, Scattering, Scene, Standard};
 use bevy_kiln::trace::{Effect, EffectSet, Estimator, ForcedEffects, Transport};
 use common::garden::garden;
 use common::glb;
 use common::meter::{at, on_walls, read};
 use common::scenes::{SceneBuilder, glowing, grey};
 use glam::Vec3;
+use std::f64::consts::PI;
 
 fn with(on: EffectSet) -> Transport {
     Transport { effects: ForcedEffects { on, ..ForcedEffects::default() }, ..Transport::default() }
@@ -56,6 +57,35 @@ fn light_that_is_forced_off_is_missing() {
     .map(reading);
     assert!(dark == 0.0 && no_lamp > 0.0 && no_sky > 0.0, "{all} {no_lamp} {no_sky} {dark}");
     assert!((no_lamp + no_sky - all).abs() < 2e-3 * all, "{no_lamp} + {no_sky} is not {all}");
+}
+
+/// What is black and yet reflects, varnish and the surface of glass, passes light on: paths need a bounce for it.
+#[test]
+fn black_varnish_and_black_glass_pass_light_on() {
+    let varnish =
+        Standard { reflectance: 0.0, clearcoat: 1.0, clearcoat_perceptual_roughness: 0.0, ..Standard::default() };
+    let interior = Interior::Volume { attenuation_colour: Vec3::ONE, attenuation_distance: 1.0 };
+    let glass = Standard {
+        reflectance: 0.0,
+        specular_transmission: 1.0,
+        perceptual_roughness: 0.0,
+        interior,
+        ..Standard::default()
+    };
+    for scattering in [
+        Scattering::Standard(Box::new(varnish)),
+        Scattering::Standard(Box::new(glass)),
+        Scattering::Refraction { ior: 1.5 },
+    ] {
+        let material = Material::scattering("black", Vec3::ZERO, scattering.clone());
+        let mut scene = SceneBuilder::default()
+            .quad("ceiling", Vec3::new(-50.0, 1.0, -50.0), [100.0 * Vec3::X, 100.0 * Vec3::Z], material)
+            .build();
+        scene.sky_radiance = Vec3::ONE;
+        // Held below the ceiling's front, the meter sees nothing but the sky's reflection in it.
+        let reading = read(&scene, &[at(Vec3::ZERO, Vec3::Y)], 1 << 10, Transport::default())[0].irradiance.x;
+        assert!(reading > 0.05 * PI, "{scattering:?}: {reading}");
+    }
 }
 
 /// The plan as a person reads it, for scenes of different kinds; shares and times, which no test can know, apart.

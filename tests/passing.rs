@@ -4,11 +4,11 @@
 mod common;
 
 use bevy_kiln::artefact::StableId;
-use bevy_kiln::bake::MeterPoint;
+use bevy_kiln::bake::{CancelToken, MeterPoint, PictureSettings, render_picture};
 use bevy_kiln::math::{Welford, corner_parallel_rectangle, welch_t_test};
 use bevy_kiln::scene::{
-    Alpha, DirectionalLight, Filter, Light, Material, Scattering, Scene, Standard, Texels, Texture, TextureRef,
-    UvChannel, Wrap,
+    Alpha, Camera, DirectionalLight, Filter, Light, Material, PointLight, Scattering, Scene, Standard, Texels, Texture,
+    TextureRef, UvChannel, Wrap,
 };
 use bevy_kiln::trace::{Effect, Estimator, Transport};
 use common::meter::{at, by, mean, read};
@@ -254,4 +254,81 @@ fn a_furnace_with_glowing_panes_in_it() {
         mean_within(readings[0].irradiance.x, readings[0].stderr.x, PI, 0.01 * PI)
             .unwrap_or_else(|reason| panic!("{estimator:?}: {reason}"));
     }
+}
+
+/// A camera sees the ground through a black veil that is half there, and the sky lights the ground through the same
+/// veil: what the camera's ray did must not decide what the next one does.
+#[test]
+fn a_camera_and_the_light_each_pass_by_chances_of_their_own() {
+    let mut scene = screen(1.0, black(Alpha::Blend, Vec4::new(0.0, 0.0, 0.0, 0.5)));
+    let ground = SceneBuilder::default()
+        .quad("ground", Vec3::ZERO, [100.0 * Vec3::Z, 100.0 * Vec3::X], common::scenes::grey(1.0))
+        .build();
+    scene.instances.push(bevy_kiln::scene::Instance { mesh: 1, material: 1, ..ground.instances[0].clone() });
+    scene.instances[1].world_from_local.translation = Vec3::new(-50.0, 0.0, -50.0).into();
+    scene.meshes.extend(ground.meshes);
+    scene.materials.extend(ground.materials);
+    scene.sky_radiance = Vec3::ONE;
+    let camera = Camera::look_at("camera", Vec3::new(0.0, 2.0, 0.0), Vec3::new(0.1, 0.0, 0.1), 0.01);
+    let settings = PictureSettings {
+        transport: Transport::default(),
+        width: 1,
+        height: 1,
+        samples_per_pixel: 1 << 14,
+        threads: None,
+    };
+    let picture = render_picture(&scene, &camera, &settings, &(), &CancelToken::default()).unwrap();
+    // Light that comes in beyond the rim is less than 0.1 %.
+    mean_within(f64::from(picture.radiance[0].x), f64::from(picture.stderr[0].x), 0.25, 0.01).unwrap();
+}
+
+/// A bulb so large that a clear pane cuts through it is one bulb, on whichever side of the pane it is met.
+#[test]
+fn a_pane_inside_a_bulb() {
+    let mut scene = screen(1.0, black(Alpha::Add, Vec4::ONE));
+    scene.lights.push(Light::Point(PointLight {
+        id: StableId::new("bulb"),
+        name: "bulb".into(),
+        position: Vec3::new(0.0, 1.2, 0.0),
+        intensity: Vec3::splat(PI as f32 * 0.25),
+        radius: 0.5,
+        range: None,
+    }));
+    // A sphere of radiance 1, all of it above the horizon.
+    let truth = PI * (0.5_f64 / 1.2).powi(2);
+    for estimator in ESTIMATORS {
+        let reading = read(&scene, &[at(Vec3::ZERO, Vec3::Y)], 1 << 14, by(estimator))[0];
+        mean_within(reading.irradiance.x, reading.stderr.x, truth, 0.02 * truth)
+            .unwrap_or_else(|reason| panic!("{estimator:?}: {reason}"));
+    }
+}
+
+/// A smooth pane loses nothing, and makes nothing, where its shading normals are not those of its triangles: what
+/// crosses is what is not reflected, by the same normal.
+#[test]
+fn a_pane_with_smooth_normals_in_a_furnace() {
+    let standard = Standard { specular_transmission: 1.0, perceptual_roughness: 0.0, ..Standard::default() };
+    let mut scene = common::scenes::furnace(0.0);
+    let pane = SceneBuilder::default()
+        .quad(
+            "pane",
+            Vec3::new(-0.9, 0.0, -0.9),
+            [1.8 * Vec3::Z, 1.8 * Vec3::X],
+            Material::scattering("pane", Vec3::ONE, Scattering::Standard(Box::new(standard))),
+        )
+        .build();
+    scene.instances.push(bevy_kiln::scene::Instance { mesh: 6, material: 6, ..pane.instances[0].clone() });
+    scene.meshes.extend(pane.meshes);
+    scene.materials.extend(pane.materials);
+    scene.meshes[6].normals = Some(vec![Vec3::new(0.7, 1.0, 0.0).normalize(); 4]);
+    let camera = Camera::look_at("camera", Vec3::new(0.6, 0.5, 0.0), Vec3::new(0.0, 0.0, 0.1), 0.01);
+    let settings = PictureSettings {
+        transport: Transport::default(),
+        width: 1,
+        height: 1,
+        samples_per_pixel: 1 << 10,
+        threads: None,
+    };
+    let picture = render_picture(&scene, &camera, &settings, &(), &CancelToken::default()).unwrap();
+    mean_within(f64::from(picture.radiance[0].x), f64::from(picture.stderr[0].x), 1.0, 1e-3).unwrap();
 }

@@ -19,6 +19,10 @@ pub(crate) struct Census {
     environment_size: [u32; 2],
 }
 
+/// What reflects light on a surface whose base colour is black.
+const REFLECTS_WITHOUT_COLOUR: EffectSet =
+    EffectSet::NONE.with(Effect::SpecularReflection).with(Effect::Clearcoat).with(Effect::Refraction);
+
 /// The effect that a light is a part of.
 pub(crate) fn effect_of(light: &Light) -> Effect {
     match light {
@@ -111,9 +115,11 @@ impl Census {
             let material = &counted.scene.materials[material];
             let is_black = match &material.scattering {
                 Scattering::None => true,
+                // The surface of glass reflects whatever its colour.
+                Scattering::Refraction { .. } => false,
                 Scattering::Diffuse | Scattering::Mirror => material.base_colour.truncate() == Vec3::ZERO,
-                Scattering::Standard(_) | Scattering::Refraction { .. } | Scattering::Phong { .. } => {
-                    material.base_colour.truncate() == Vec3::ZERO && !calls.has(Effect::SpecularReflection)
+                Scattering::Standard(_) | Scattering::Phong { .. } => {
+                    material.base_colour.truncate() == Vec3::ZERO && !calls.has_any(REFLECTS_WITHOUT_COLOUR)
                 }
             };
             if !is_black && transport.max_bounces != Some(0) {

@@ -30,6 +30,8 @@ pub(super) struct Surface {
     pub(super) uv_transform: Affine2,
     /// Whether light may pass straight.
     pub(super) passes: bool,
+    /// Whether it is clear and thin, so that some of what is there lets light pass straight.
+    pub(super) is_pane: bool,
     /// How much the body behind it absorbs [1/m]; `None` where there is no body.
     pub(super) body: Option<Vec3>,
 }
@@ -44,13 +46,14 @@ impl Surface {
             alpha => alpha,
         };
         let scattering = scattering(material, effects);
-        let is_thin = matches!(&scattering, Scattering::Standard(standard)
+        let is_pane = matches!(&scattering, Scattering::Standard(standard)
             if standard.interior == Interior::ThinWalled && standard.specular_transmission > 0.0);
         let emits = effects.has(Effect::AreaLights);
         Self {
             base_colour: material.base_colour,
             base_colour_texture: keep(Effect::Textures, material.base_colour_texture),
-            passes: is_thin || alpha != Alpha::Opaque,
+            passes: is_pane || alpha != Alpha::Opaque,
+            is_pane,
             body: body(&scattering),
             scattering,
             alpha,

@@ -91,9 +91,13 @@ impl Tracer {
             Alpha::Multiply => (Vec3::ONE - alpha * (Vec3::ONE - rgb), 0.0),
             Alpha::Add => (Vec3::ONE, 0.0),
         };
-        if K & LAYERED != 0 && presence > 0.0 {
-            let cosine = self.triangles[place.triangle as usize].normal.dot(direction).abs();
-            transmittance += presence * self.bsdf::<K>(surface, place, 1.0).straight(cosine);
+        if K & LAYERED != 0 && surface.is_pane && presence > 0.0 {
+            let front = self.triangles[place.triangle as usize].normal;
+            let side = if front.dot(direction) < 0.0 { 1.0 } else { -1.0 };
+            // By the normal that reflects, so that nothing is lost or made between the two.
+            let frame = self.shading_frame(surface, place, front * side, -direction, side);
+            let cosine = -frame.normal.dot(direction);
+            transmittance += presence * self.bsdf::<K>(surface, place, side).straight(cosine);
         }
         Passage { transmittance, presence }
     }

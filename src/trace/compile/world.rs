@@ -55,7 +55,7 @@ impl World {
             surfaces,
             textures,
             attributes: Attributes::new(needs),
-            albedo_tables: if kernel & LAYERED == 0 { None } else { Some(Arc::new(AlbedoTables::new())) },
+            albedo_tables: None,
             emitter_of: Vec::new(),
             triangle_of: Vec::new(),
             lights: Sources::default().into_lights(),
@@ -144,7 +144,7 @@ impl World {
         self.shapes
     }
 
-    /// The tracer; takes the tree of another of the same scene where there is one.
+    /// The tracer; takes the tree of another of the same scene where there is one, and its tables.
     pub(super) fn into_tracer(self, sky_radiance: Vec3, other: Option<&Tracer>) -> Tracer {
         let mut tracer = self.tracer;
         tracer.accel = match other {
@@ -154,6 +154,10 @@ impl World {
                 Arc::new(Accel::new(&corners))
             }
         };
+        if tracer.kernel & LAYERED != 0 {
+            let tables = other.and_then(|other| other.albedo_tables.clone());
+            tracer.albedo_tables = Some(tables.unwrap_or_else(|| Arc::new(AlbedoTables::new())));
+        }
         let vertices = tracer.triangles.iter().flat_map(|triangle| triangle.vertices);
         let bounds = vertices.fold(None, |bounds: Option<(Vec3, Vec3)>, vertex| {
             Some(bounds.map_or((vertex, vertex), |(low, high)| (low.min(vertex), high.max(vertex))))

@@ -167,8 +167,16 @@ impl Lights {
     ) -> impl Iterator<Item = MetSource> + 'a {
         let Way { origin, direction: wi, end, passed } = way;
         self.passable.candidates(origin, wi, end).filter_map(move |number| {
-            let distance = self.get(number).intersect(origin, wi).filter(|distance| *distance < end)?;
-            let radiance = self.get(number).radiance_towards(ctx.position, wi);
+            let emitter = self.get(number);
+            let distance = match emitter.shape {
+                // Only the near side of a sphere shines; from within it, one that was passed would be met again.
+                EmitterShape::Sphere { .. } => emitter.intersect(ctx.position, wi)? - passed,
+                _ => emitter.intersect(origin, wi)?,
+            };
+            if !(0.0..end).contains(&distance) {
+                return None;
+            }
+            let radiance = emitter.radiance_towards(ctx.position, wi);
             (radiance != Vec3::ZERO).then(|| {
                 let pdf = self.pdf(number, ctx, wi, passed + distance);
                 MetSource { radiance, pdf, distance }

@@ -160,9 +160,11 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         let mut origin = ray.origin;
         // Straight through surfaces that were passed.
         let mut passed = 0.0;
-        let mut u_pass = match K & PASSING {
-            0 => 0.0,
-            _ => self.sampler.draw(Dimensions::Light { vertex: self.number })[3],
+        let mut u_pass = match (K & PASSING, ray.survival) {
+            (0, _) => 0.0,
+            // Not the number of the ray after it, which leaves the same vertex.
+            (_, None) => self.sampler.draw(Dimensions::Start)[3],
+            (_, Some(_)) => self.sampler.draw(Dimensions::Light { vertex: self.number })[3],
         };
         let (hit, surface) = loop {
             *self.rays += 1;

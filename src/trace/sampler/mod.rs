@@ -11,14 +11,15 @@ pub(crate) use sobol::Sobol;
 /// What a group of four numbers is for. Groups do not share a dimension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Dimensions {
-    /// Where a path starts: two for the place in the texel or the pixel.
+    /// Where a path starts: two for the place in the texel or the pixel, the last for what a camera's ray passes.
     Start,
-    /// The way on from a vertex: two for the direction, one for roulette.
+    /// The way on from a vertex: two for the direction, one for roulette, one for the lobe.
     Scatter {
         /// Number of the vertex along the path.
         vertex: u32,
     },
-    /// A point on a light, seen from a vertex: two for the point, one for the choice of light.
+    /// A point on a light, seen from a vertex: two for the point, one for the choice of light; the last for what the
+    /// way on from the vertex passes.
     Light {
         /// Number of the vertex along the path.
         vertex: u32,
