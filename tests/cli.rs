@@ -3,6 +3,8 @@
 
 #[path = "support/glb.rs"]
 mod glb;
+#[path = "cli/inputs.rs"]
+mod inputs;
 #[path = "cli/punctual.rs"]
 mod punctual;
 #[path = "cli/skies.rs"]
