@@ -7,6 +7,8 @@ mod glb;
 mod inputs;
 #[path = "cli/punctual.rs"]
 mod punctual;
+#[path = "cli/room.rs"]
+mod room;
 #[path = "cli/skies.rs"]
 mod skies;
 
