@@ -3,8 +3,12 @@
 
 #[path = "support/glb.rs"]
 mod glb;
+#[path = "cli/inputs.rs"]
+mod inputs;
 #[path = "cli/punctual.rs"]
 mod punctual;
+#[path = "cli/room.rs"]
+mod room;
 #[path = "cli/skies.rs"]
 mod skies;
 

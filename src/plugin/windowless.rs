@@ -1,17 +1,20 @@
 //! A scene file in an app without window, GPU or log: what the `kiln` command bakes from, and any other program
 //! that bakes on a machine without a screen.
 
-use super::KilnPlugin;
+mod error;
+
+pub use error::OpenError;
+
+use super::{ExtractionWarning, KilnPlugin};
 use bevy::app::{App, PluginGroup, PluginGroupBuilder, TaskPoolPlugin};
 use bevy::asset::{AssetLoadError, AssetPlugin, LoadState, RecursiveDependencyLoadState, UnapprovedPathMode};
-use bevy::gltf::{Gltf, GltfPlugin};
+use bevy::gltf::{Gltf, GltfLoaderSettings, GltfPlugin};
 use bevy::image::{CompressedImageFormatSupport, CompressedImageFormats};
 use bevy::prelude::*;
 use bevy::window::{ExitCondition, WindowPlugin};
 use bevy::world_serialization::{DynamicWorld, DynamicWorldRoot, WorldAssetRoot, WorldSerializationPlugin};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use thiserror::Error;
 
 /// Frames after loading in which a scene is spawned and its transforms and visibility are propagated.
 const FRAMES_TO_SETTLE: usize = 3;
@@ -19,49 +22,18 @@ const FRAMES_TO_SETTLE: usize = 3;
 /// Longest wait for a file to load.
 const PATIENCE: Duration = Duration::from_secs(600);
 
-/// Why a scene file cannot be opened.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum OpenError {
-    /// There is no such file.
-    #[error("there is no file {}; check the path", path.display())]
-    Missing {
-        /// The path asked for.
-        path: PathBuf,
-    },
-    /// It is of a kind that is not read.
-    #[error("{} is no scene that can be read; give a .glb, a .gltf or a .scn.ron file", path.display())]
-    UnknownKind {
-        /// The path asked for.
-        path: PathBuf,
-    },
-    /// A picture of the sky of a kind that is not read.
-    #[error("{} is no picture of a sky that can be read; give an .hdr or an .exr file", path.display())]
-    UnknownPicture {
-        /// The path asked for.
-        path: PathBuf,
-    },
-    /// It cannot be read.
-    #[error("{} cannot be loaded ({reason}); it may be damaged or cut short, export it again", path.display())]
-    Broken {
-        /// The path asked for.
-        path: PathBuf,
-        /// What the loader said.
-        reason: String,
-    },
-    /// It holds no scene.
-    #[error("{} holds no scene; export it with one", path.display())]
-    NoScene {
-        /// The path asked for.
-        path: PathBuf,
-    },
-    /// Loading does not end.
-    #[error("{} is still not loaded after {} s; see that the disk answers", path.display(), PATIENCE.as_secs())]
-    TooSlow {
-        /// The path asked for.
-        path: PathBuf,
-    },
-}
+/// Extensions of glTF that change where light goes and that Bevy's loader does not read.
+const UNREAD_EXTENSIONS: [&str; 5] = [
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",
+    "KHR_materials_iridescence",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",
+];
+
+/// Those of them that the opened scene uses.
+#[derive(Resource, Default)]
+struct UnreadExtensions(Vec<String>);
 
 /// All of Bevy that a scene needs to be read, and no renderer; to build an app of one's own with
 /// [`KilnPlugin`].
@@ -124,13 +96,14 @@ pub fn open_scene(path: &Path) -> Result<App, OpenError> {
     let file = bevy::asset::AssetPath::from(PathBuf::from(file));
     match kind {
         Kind::Gltf => {
-            let handle = app.world().resource::<AssetServer>().load::<Gltf>(file);
-            wait(&mut app, handle.id().untyped(), path)?;
+            let handle =
+                app.world().resource::<AssetServer>().load_builder().with_settings(keep_source).load::<Gltf>(file);
+            wait(&mut app, handle.id().untyped(), path, OpenError::of_scene)?;
             spawn_gltf(&mut app, &handle, path)?;
         }
         Kind::DynamicWorld => {
             let handle = app.world().resource::<AssetServer>().load::<DynamicWorld>(file);
-            wait(&mut app, handle.id().untyped(), path)?;
+            wait(&mut app, handle.id().untyped(), path, OpenError::of_scene)?;
             app.world_mut().spawn(DynamicWorldRoot(handle));
         }
     }
@@ -138,6 +111,13 @@ pub fn open_scene(path: &Path) -> Result<App, OpenError> {
         app.update();
     }
     Ok(app)
+}
+
+/// What of the file behind an app of [`open_scene`] Bevy's loader has not read.
+pub fn unread_parts(app: &App) -> Vec<ExtractionWarning> {
+    let unread = app.world().get_resource::<UnreadExtensions>();
+    let names = unread.map(|unread| unread.0.clone()).unwrap_or_default();
+    names.into_iter().map(|extension| ExtractionWarning::ExtensionNotRead { extension }).collect()
 }
 
 /// Loads an equirectangular picture of the sky, for [`SceneSettings::environment`](super::SceneSettings).
@@ -151,7 +131,7 @@ pub fn load_environment(app: &mut App, path: &Path) -> Result<Handle<Image>, Ope
         return Err(OpenError::Missing { path: path.to_owned() });
     }
     let handle = app.world().resource::<AssetServer>().load::<Image>(bevy::asset::AssetPath::from(absolute));
-    wait(app, handle.id().untyped(), path)?;
+    wait(app, handle.id().untyped(), path, OpenError::of_picture)?;
     Ok(handle)
 }
 
@@ -177,32 +157,42 @@ fn spawn_gltf(app: &mut App, handle: &Handle<Gltf>, path: &Path) -> Result<(), O
     let gltf = app.world().resource::<Assets<Gltf>>().get(handle);
     let scene = gltf.and_then(|gltf| gltf.default_scene.clone().or_else(|| gltf.scenes.first().cloned()));
     let Some(scene) = scene else { return Err(OpenError::NoScene { path: path.to_owned() }) };
+    let unread = unread_extensions(app, handle);
+    app.insert_resource(UnreadExtensions(unread));
     app.world_mut().spawn(WorldAssetRoot(scene));
     Ok(())
 }
 
+/// Has the loader keep what it read the scene from, for [`unread_extensions`].
+fn keep_source(settings: &mut GltfLoaderSettings) {
+    settings.include_source = true;
+}
+
+/// The extensions that a file uses and its loader does not read; lets go of what the loader kept.
+fn unread_extensions(app: &mut App, handle: &Handle<Gltf>) -> Vec<String> {
+    let mut files = app.world_mut().resource_mut::<Assets<Gltf>>();
+    let Some(source) = files.get_mut(handle).and_then(|mut gltf| gltf.source.take()) else { return Vec::new() };
+    let used = source.extensions_used().filter(|used| UNREAD_EXTENSIONS.contains(used));
+    used.map(ToOwned::to_owned).collect()
+}
+
 /// Runs the app until an asset is loaded with all that it refers to.
-fn wait(app: &mut App, id: bevy::asset::UntypedAssetId, path: &Path) -> Result<(), OpenError> {
+fn wait(
+    app: &mut App,
+    id: bevy::asset::UntypedAssetId,
+    path: &Path,
+    broken: fn(&Path, &AssetLoadError) -> OpenError,
+) -> Result<(), OpenError> {
     let start = Instant::now();
     loop {
         app.update();
         let server = app.world().resource::<AssetServer>();
-        let broken = |error: &AssetLoadError| OpenError::Broken { path: path.to_owned(), reason: reason(error) };
         match (server.load_state(id), server.recursive_dependency_load_state(id)) {
-            (LoadState::Failed(error), _) => return Err(broken(&error)),
-            (_, RecursiveDependencyLoadState::Failed(error)) => return Err(broken(&error)),
+            (LoadState::Failed(error), _) => return Err(broken(path, &error)),
+            (_, RecursiveDependencyLoadState::Failed(error)) => return Err(broken(path, &error)),
             (LoadState::Loaded, RecursiveDependencyLoadState::Loaded) => return Ok(()),
             _ if start.elapsed() > PATIENCE => return Err(OpenError::TooSlow { path: path.to_owned() }),
             _ => std::thread::sleep(Duration::from_millis(1)),
         }
     }
-}
-
-/// What went wrong, without the loader's type and without a stack trace.
-fn reason(error: &AssetLoadError) -> String {
-    let text = match error {
-        AssetLoadError::AssetLoaderError(error) => error.error().to_string(),
-        other => other.to_string(),
-    };
-    text.lines().next().unwrap_or_default().trim().to_owned()
 }

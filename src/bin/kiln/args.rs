@@ -58,13 +58,13 @@ pub(crate) struct SceneArgs {
     #[arg(long)]
     pub(crate) no_range: bool,
     /// Cut paths after N bounces, which loses light: 0 is direct light only
-    #[arg(long, value_name = "N|none", default_value = "none", value_parser = parse::max_bounces)]
+    #[arg(long, value_name = "N|none", default_value = "none", value_parser = parse::max_bounces, allow_hyphen_values = true)]
     pub(crate) max_bounces: Bounces,
     /// Which samples estimates of light are made of
     #[arg(long, value_enum, default_value_t = EstimatorArg::Mis)]
     pub(crate) estimator: EstimatorArg,
     /// Changes every random number, and nothing else
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value = "0", value_parser = parse::seed, allow_hyphen_values = true)]
     pub(crate) seed: u64,
     /// The most that one path may bring (cd/m²): takes out bright specks and, with them, light
     #[arg(long, value_name = "RADIANCE", value_parser = parse::clamp, allow_hyphen_values = true)]
@@ -76,7 +76,7 @@ pub(crate) struct SceneArgs {
     #[arg(long, value_name = "EFFECT,...", value_delimiter = ',', value_parser = parse::effect)]
     pub(crate) without: Vec<Effect>,
     /// Threads that trace [default: all cores]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = parse::threads, allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZeroUsize>,
 }
 
@@ -134,7 +134,7 @@ pub(crate) struct LayoutArgs {
     #[arg(long, value_name = "N", required_if_eq("layout", "shared"))]
     pub(crate) size: Option<u32>,
     /// Paths that start in each texel
-    #[arg(long, value_name = "N", default_value = "256")]
+    #[arg(long, value_name = "N", default_value = "256", value_parser = parse::count, allow_hyphen_values = true)]
     pub(crate) spp: NonZeroU32,
 }
 
@@ -187,7 +187,7 @@ pub(crate) struct IrradianceArgs {
     #[arg(short, long, value_name = "OUT.csv")]
     pub(crate) output: Option<PathBuf>,
     /// Paths that start from each point
-    #[arg(long, value_name = "N", default_value = "256")]
+    #[arg(long, value_name = "N", default_value = "256", value_parser = parse::count, allow_hyphen_values = true)]
     pub(crate) spp: NonZeroU32,
     #[arg(long, hide = true)]
     pub(crate) error: Option<String>,
@@ -218,7 +218,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = parse::size)]
     pub(crate) size: (u32, u32),
     /// Paths that start in each pixel
-    #[arg(long, value_name = "N", default_value = "256")]
+    #[arg(long, value_name = "N", default_value = "256", value_parser = parse::count, allow_hyphen_values = true)]
     pub(crate) spp: NonZeroU32,
     /// Exposure of a .png: the camera's exposure value at ISO 100
     #[arg(long, value_name = "EV", default_value_t = 9.7, allow_hyphen_values = true)]

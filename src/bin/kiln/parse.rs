@@ -4,6 +4,7 @@ use crate::args::Bounces;
 use bevy_kiln::plugin::EmissiveUnit;
 use bevy_kiln::trace::Effect;
 use glam::Vec3;
+use std::num::{NonZeroU32, NonZeroUsize};
 
 pub(crate) fn emissive(text: &str) -> Result<EmissiveUnit, String> {
     let unknown = || "use nits, displayed or displayed=EV100, such as displayed=9.7".to_owned();
@@ -35,6 +36,18 @@ pub(crate) fn max_bounces(text: &str) -> Result<Bounces, String> {
         return Ok(Bounces(None));
     }
     text.parse().map(|bounces| Bounces(Some(bounces))).map_err(|_| "give a whole number, or none for no cap".to_owned())
+}
+
+pub(crate) fn count(text: &str) -> Result<NonZeroU32, String> {
+    text.parse().map_err(|_| format!("give a whole number from 1 to {}", u32::MAX))
+}
+
+pub(crate) fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    text.parse().map_err(|_| "give a whole number of 1 or more, or leave it out for all cores".to_owned())
+}
+
+pub(crate) fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("give a whole number from 0 to {}", u64::MAX))
 }
 
 pub(crate) fn clamp(text: &str) -> Result<f32, String> {
@@ -78,6 +91,8 @@ mod tests {
         assert_eq!(max_bounces("none").map(|b| b.0), Ok(None));
         assert_eq!(max_bounces("0").map(|b| b.0), Ok(Some(0)));
         assert!(max_bounces("-1").is_err());
+        assert!(count("0").is_err() && count("7").is_ok_and(|n| n.get() == 7) && threads("0").is_err());
+        assert!(seed("-1").is_err() && seed("18446744073709551615") == Ok(u64::MAX));
         assert_eq!(size("640x480"), Ok((640, 480)));
         assert!(size("0x1").is_err() && size("640").is_err());
         assert_eq!(effect("cut-outs"), Ok(Effect::CutOuts));

@@ -58,7 +58,7 @@ fn camera(args: &RenderArgs, scene: &Scene) -> Result<Camera, Failure> {
         (_, true) => Failure::Failed("the scene has no camera; give --eye X,Y,Z and --target X,Y,Z".to_owned()),
         (name, false) => {
             let name = name.as_deref().unwrap_or_default();
-            Failure::Failed(format!("the scene has no camera \"{name}\"; it has {}", names.join(", ")))
+            Failure::Failed(format!("the scene has no camera \"{name}\"; it has \"{}\"", names.join("\", \"")))
         }
     })
 }

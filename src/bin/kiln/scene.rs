@@ -3,7 +3,7 @@
 use crate::args::{EstimatorArg, LayoutArg, LayoutArgs, SceneArgs};
 use crate::failure::Failure;
 use bevy_kiln::bake::{BakeSettings, CancelToken, Layout};
-use bevy_kiln::plugin::windowless::{load_environment, open_scene};
+use bevy_kiln::plugin::windowless::{load_environment, open_scene, unread_parts};
 use bevy_kiln::plugin::{Extraction, RangeWindow, SceneSettings, extract_scene};
 use bevy_kiln::trace::{Estimator, ForcedEffects, Transport};
 use glam::Vec3;
@@ -23,7 +23,9 @@ pub(crate) fn open(args: &SceneArgs, cancel: &CancelToken) -> Result<Extraction,
         environment,
         ..SceneSettings::default()
     };
-    Ok(extract_scene(app.world_mut(), &settings))
+    let mut extraction = extract_scene(app.world_mut(), &settings);
+    extraction.warnings.extend(unread_parts(&app));
+    Ok(extraction)
 }
 
 /// The same for what makes no lightmaps, so that nothing is said about those that cannot be made.

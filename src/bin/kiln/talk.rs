@@ -27,7 +27,7 @@ impl Talk {
     }
 
     pub(crate) fn plan(self, plan: &BakePlan) {
-        self.say("plan");
+        self.say("plan: effects, the share of the time that would be saved without each, and why");
         let width = Effect::ALL.into_iter().map(|effect| effect.name().len()).max().unwrap_or(0);
         for effect in &plan.effects {
             let mark = if effect.on { "on " } else { "off" };
@@ -39,7 +39,7 @@ impl Talk {
         self.say(format_args!("  {} texels on {} {pages}, {mebibytes:.1} MiB", plan.texels, plan.pages));
         for prediction in &plan.predicted {
             let error = 100.0 * prediction.error;
-            self.say(format_args!("  about {} for an error of {error:.2} %", duration(prediction.seconds)));
+            self.say(format_args!("  about {} for an error of {error:.1} % at 95 %", duration(prediction.seconds)));
         }
     }
 

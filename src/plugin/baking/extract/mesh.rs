@@ -92,8 +92,11 @@ fn read(
     let mut optional = |which: MeshVertexAttribute, what: &'static str| -> Result<Option<_>, ExtractionWarning> {
         let Some(values) = attribute(which)? else { return Ok(None) };
         let numbers = attribute::numbers(values);
-        if numbers.is_none() {
-            warnings.push(format_warning(&name, what, values));
+        match &numbers {
+            None => warnings.push(format_warning(&name, what, values)),
+            // A faulty UV1 costs the mesh its lightmap, and the scene's own check says so.
+            Some(numbers) if what != "UV1" => warnings.extend(not_finite(&name, what, numbers)),
+            Some(_) => {}
         }
         Ok(numbers)
     };
@@ -113,6 +116,11 @@ fn read(
         colours,
         tangents,
     })
+}
+
+fn not_finite(name: &str, attribute: &'static str, numbers: &[Vec4]) -> Option<ExtractionWarning> {
+    let vertex = numbers.iter().position(|number| !number.is_finite())?;
+    Some(ExtractionWarning::NonFiniteAttribute { name: name.to_owned(), attribute, vertex })
 }
 
 fn three(values: &VertexAttributeValues) -> Option<Vec<Vec3>> {

@@ -73,6 +73,19 @@ pub enum ExtractionWarning {
         /// What follows.
         consequence: &'static str,
     },
+    /// A vertex attribute has NaN or infinity in it.
+    #[error(
+        "mesh \"{name}\" has {attribute} that are not finite numbers (the first at vertex {vertex}), so it is baked \
+         wrongly around there; repair the mesh and export it again"
+    )]
+    NonFiniteAttribute {
+        /// The entity.
+        name: String,
+        /// Which attribute.
+        attribute: &'static str,
+        /// The first such vertex.
+        vertex: usize,
+    },
     /// The mesh is skinned or morphed.
     #[error("mesh \"{name}\" is {how}, so it takes part in its rest shape and gets no lightmap")]
     Deformed {
@@ -119,6 +132,12 @@ pub enum ExtractionWarning {
         what: &'static str,
         /// Why not.
         why: Unreadable,
+    },
+    /// An extension of glTF that Bevy's loader does not read.
+    #[error("the file uses {extension}, which Bevy does not read: it is neither shown nor baked")]
+    ExtensionNotRead {
+        /// The extension.
+        extension: String,
     },
     /// A light that shines through a picture.
     #[error("light \"{name}\" shines through a picture ({component}), which is not simulated: it is baked without")]
