@@ -3,7 +3,7 @@
 mod common;
 
 use bevy_kiln::bake::{BakePlan, BakeSettings};
-use bevy_kiln::scene::{Interior, Material, Scattering, Scene, Standard};
+use bevy_kiln::scene::{Interior, Light, Material, Scattering, Scene, Standard};
 use bevy_kiln::trace::{Effect, EffectSet, Estimator, ForcedEffects, Transport};
 use common::garden::garden;
 use common::glb;
@@ -85,6 +85,30 @@ fn black_varnish_and_black_glass_pass_light_on() {
         // Held below the ceiling's front, the meter sees nothing but the sky's reflection in it.
         let reading = read(&scene, &[at(Vec3::ZERO, Vec3::Y)], 1 << 10, Transport::default())[0].irradiance.x;
         assert!(reading > 0.05 * PI, "{scattering:?}: {reading}");
+    }
+}
+
+/// Light that no path finds is warned of: a sun without a disc on a mirror; with a disc it is found.
+#[test]
+fn a_sun_without_a_size_is_warned_of_where_a_mirror_should_show_it() {
+    let warnings = |angular_diameter: f32, scattering: Scattering| {
+        let mut scene = SceneBuilder::default()
+            .quad("floor", Vec3::ZERO, [Vec3::Z, Vec3::X], grey(0.5))
+            .quad("thing", Vec3::X, [Vec3::Z, Vec3::Y], Material::scattering("thing", Vec3::ONE, scattering))
+            .build();
+        let mut sun = garden().lights.remove(2);
+        if let Light::Directional(sun) = &mut sun {
+            sun.angular_diameter = angular_diameter;
+        }
+        scene.lights.push(sun);
+        let plan = BakePlan::for_scene(&scene, &BakeSettings::default()).unwrap();
+        plan.warnings.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    let found = warnings(0.0, Scattering::Mirror);
+    assert!(found.len() == 1 && found[0].starts_with("lights without a size (1) neither shine through"), "{found:?}");
+    let rough = Scattering::Standard(Box::new(Standard { metallic: 1.0, ..Standard::default() }));
+    for (diameter, scattering) in [(0.01, Scattering::Mirror), (0.0, rough), (0.0, Scattering::Diffuse)] {
+        assert_eq!(warnings(diameter, scattering), [""; 0]);
     }
 }
 

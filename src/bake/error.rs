@@ -1,7 +1,7 @@
 //! Why a bake did not happen, and what it left out, sorted by who must act.
 
 use crate::scene::{Fault, Subject};
-use crate::trace::{Effect, EffectSet, Transport};
+use crate::trace::{Census, Effect, EffectSet, Transport};
 use thiserror::Error;
 
 /// Why there is no result.
@@ -85,6 +85,17 @@ pub enum BakeWarning {
         /// Their names.
         effects: String,
     },
+    /// Light that no path finds: from lights without a size by way of perfectly smooth surfaces.
+    #[error(
+        "lights without a size ({lights}) neither shine through bodies of perfectly smooth glass nor off perfectly \
+         smooth mirrors ({materials} materials); give such a light a radius (a sun a SunDisk), or a pane no thickness"
+    )]
+    Unfindable {
+        /// How many such lights.
+        lights: u64,
+        /// How many such materials.
+        materials: u64,
+    },
     /// Texel values beyond what a texture format can hold.
     #[error("{texels} texels are brighter than {format} can hold ({limit} cd/m²) and were clamped")]
     Clamped {
@@ -98,8 +109,15 @@ pub enum BakeWarning {
 }
 
 impl BakeWarning {
+    /// What a scene's lights and surfaces give reason to warn of, beside faults.
+    pub(super) fn of_transport(transport: &Transport, census: &Census) -> impl Iterator<Item = Self> {
+        let (lights, materials) = (census.unsized_lights(), census.smooth_materials());
+        let unfindable = (lights > 0 && materials > 0).then_some(Self::Unfindable { lights, materials });
+        Self::forced_off(transport, census.called()).into_iter().chain(unfindable)
+    }
+
     /// The warning of effects that are called for and forced off, if there are any.
-    pub(super) fn forced_off(transport: &Transport, called: EffectSet) -> Option<Self> {
+    fn forced_off(transport: &Transport, called: EffectSet) -> Option<Self> {
         let missing: Vec<&str> =
             called.iter().filter(|&effect| transport.effects.off.has(effect)).map(Effect::name).collect();
         (!missing.is_empty()).then(|| Self::ForcedOff { effects: missing.join(", ") })

@@ -90,8 +90,8 @@ pub fn bake_lightmap(
     let balance = energy_balance(&tracer, &sites, &work.results, &settings.transport, &workers)?;
     workers.announce(Stage::Repair)?;
     let pages = pages(&atlas, &sites, &work.results);
-    let forced_off = BakeWarning::forced_off(&settings.transport, census.called());
-    let warnings = faults.into_iter().map(BakeWarning::from).chain(overlaps).chain(forced_off);
+    let of_transport = BakeWarning::of_transport(&settings.transport, &census);
+    let warnings = faults.into_iter().map(BakeWarning::from).chain(overlaps).chain(of_transport);
     let report =
         BakeReport { energy_balance: balance, ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings) };
     let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));

@@ -102,7 +102,7 @@ pub fn measure_irradiance(
         samples: estimate.samples,
     };
     let warnings = faults.into_iter().map(BakeWarning::from);
-    let warnings = warnings.chain(BakeWarning::forced_off(transport, census.called()));
+    let warnings = warnings.chain(BakeWarning::of_transport(transport, &census));
     Ok(Measurement {
         readings: work.results.iter().map(reading).collect(),
         report: BakeReport::of(&work, clock.elapsed(), transport, warnings),

@@ -81,7 +81,7 @@ pub fn render_picture(
         Estimate::relative_stderr,
     )?;
     let warnings = faults.into_iter().map(BakeWarning::from);
-    let warnings = warnings.chain(BakeWarning::forced_off(&settings.transport, census.called()));
+    let warnings = warnings.chain(BakeWarning::of_transport(&settings.transport, &census));
     Ok(Picture {
         width,
         height,

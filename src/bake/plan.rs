@@ -70,7 +70,7 @@ impl BakePlan {
         let (sites, overlaps) = sites(scene, &tracer, &atlas, settings);
         let mut warnings: Vec<BakeWarning> = faults.into_iter().map(BakeWarning::from).collect();
         warnings.extend(overlaps);
-        warnings.extend(BakeWarning::forced_off(&settings.transport, census.called()));
+        warnings.extend(BakeWarning::of_transport(&settings.transport, &census));
         let pilot = Pilot::new(&sites, settings, &workers);
         let shares = pilot.cost_shares(scene, &tracer)?;
         let plan_effect = |effect| PlannedEffect {

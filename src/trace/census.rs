@@ -1,7 +1,7 @@
 //! What a scene calls for, counted: which effects, and by how many of its materials and lights.
 
 use super::effects::{Effect, EffectSet};
-use super::material::called_by;
+use super::material::{called_by, is_smooth};
 use super::transport::Transport;
 use crate::scene::{Light, Scattering, Scene};
 use glam::Vec3;
@@ -15,6 +15,7 @@ pub(crate) struct Census {
     materials: u64,
     sized_point_lights: u64,
     sized_suns: u64,
+    smooth_materials: u64,
     sky_radiance: Vec3,
     environment_size: [u32; 2],
 }
@@ -84,6 +85,17 @@ impl Census {
         self.sized_suns
     }
 
+    /// Point, spot and directional lights without a size.
+    pub(crate) fn unsized_lights(&self) -> u64 {
+        let lights = self.count(Effect::PointLights) + self.count(Effect::DirectionalLights);
+        lights - self.sized_point_lights - self.sized_suns
+    }
+
+    /// Materials that are perfectly smooth mirrors, metal or bodies of glass.
+    pub(crate) fn smooth_materials(&self) -> u64 {
+        self.smooth_materials
+    }
+
     /// Radiance of the constant sky [cd/m²].
     pub(crate) fn sky_radiance(&self) -> Vec3 {
         self.sky_radiance
@@ -113,6 +125,7 @@ impl Census {
                 self.call(effect, 1);
             }
             let material = &counted.scene.materials[material];
+            self.smooth_materials += u64::from(is_smooth(material));
             let is_black = match &material.scattering {
                 Scattering::None => true,
                 // The surface of glass reflects whatever its colour.

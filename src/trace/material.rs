@@ -2,6 +2,7 @@
 //! ask. Which is also how the scene's call for effects is told: by what the compiled material still holds.
 
 use super::attributes::Needs;
+use super::bsdf::is_perfectly_smooth;
 use super::effects::{Effect, EffectSet};
 use super::surface::TriangleShape;
 use crate::scene::{Alpha, Interior, Material, Mesh, NormalMap, Scattering, Standard, TextureRef};
@@ -160,6 +161,18 @@ fn absorption(colour: Vec3, distance: f32) -> Vec3 {
     // The smallest number that has a logarithm stands for black, so that nothing is 0 · ∞.
     let depth = -Vec3::from_array(colour.to_array().map(|channel| channel.max(f32::MIN_POSITIVE).ln()));
     (depth / distance).max(Vec3::ZERO)
+}
+
+/// Whether a material mirrors or bends much of the light in single directions, which no light sample finds.
+pub(super) fn is_smooth(material: &Material) -> bool {
+    match &material.scattering {
+        Scattering::Mirror | Scattering::Refraction { .. } => true,
+        Scattering::Standard(standard) => {
+            let is_body = standard.specular_transmission > 0.0 && standard.interior != Interior::ThinWalled;
+            is_perfectly_smooth(standard.perceptual_roughness) && (is_body || standard.metallic > 0.5)
+        }
+        Scattering::None | Scattering::Diffuse | Scattering::Phong { .. } => false,
+    }
 }
 
 /// The effects that a material on a mesh calls for, light sources aside.

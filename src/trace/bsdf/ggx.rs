@@ -81,6 +81,11 @@ impl Ggx {
     }
 }
 
+/// Whether this roughness counts as none, so that light goes in single directions.
+pub(in crate::trace) fn is_perfectly_smooth(perceptual_roughness: f32) -> bool {
+    Ggx::new(perceptual_roughness).is_none()
+}
+
 /// The half vector of two directions on the near side; `None` where there is none.
 #[inline]
 pub(super) fn half_vector(wo: Vec3, wi: Vec3) -> Option<Vec3> {

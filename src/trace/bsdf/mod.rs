@@ -21,6 +21,7 @@ mod standard;
 mod thin;
 
 pub(super) use albedo::AlbedoTables;
+pub(super) use ggx::is_perfectly_smooth;
 pub(super) use lambert::Lambert;
 pub(super) use mirror::Mirror;
 pub(super) use phong::Phong;
