@@ -9,7 +9,9 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum BakeError {
     /// The scene: nothing in it gives light.
-    #[error("the scene has no light{because}: add an emissive material or a RectLight, or give it a sky (--sky R,G,B)")]
+    #[error(
+        "the scene has no light{because}: add a light or an emissive material, or give it a sky (--sky R,G,B or --environment)"
+    )]
     NoLight {
         /// The first fault, in brackets, where a light was left out; else empty.
         because: String,

@@ -24,7 +24,7 @@ fn called(effect: Effect, census: &Census, transport: &Transport, tracer: &Trace
         return None;
     }
     let count = census.count(effect);
-    let materials = |what: &str| format!("{count} of {} {what}", counted(census.materials(), "material", "materials"));
+    let materials = |what: &str| format!("{count} of {}: {what}", counted(census.materials(), "material", "materials"));
     Some(match effect {
         Effect::AreaLights => area_lights(count, tracer),
         Effect::PointLights => {
@@ -45,18 +45,18 @@ fn called(effect: Effect, census: &Census, transport: &Transport, tracer: &Trace
                 || "no cap on bounces".to_owned(),
                 |cap| format!("cut after {cap} bounces, which loses light"),
             );
-            format!("{}, {end}", materials("reflect light"))
+            format!("{}, {end}", materials("not black"))
         }
-        Effect::Textures => materials("change from place to place"),
-        Effect::TexturedEmission => materials("glow by a texture"),
-        Effect::NormalMaps => materials("have a normal map"),
-        Effect::SpecularReflection => materials("are glossy, metal or mirrors"),
-        Effect::Clearcoat => materials("have a clear coat"),
-        Effect::Refraction => materials("are bodies of glass"),
-        Effect::ClearPanes => materials("are clear panes"),
-        Effect::DiffuseTransmission => materials("let diffuse light through"),
-        Effect::CutOuts => materials("have holes cut by a mask"),
-        Effect::Transparency => materials("are transparent"),
+        Effect::Textures => materials("not the same all over"),
+        Effect::TexturedEmission => materials("glowing by a texture"),
+        Effect::NormalMaps => materials("with a normal map"),
+        Effect::SpecularReflection => materials("glossy, metal or mirrors"),
+        Effect::Clearcoat => materials("with a clear coat"),
+        Effect::Refraction => materials("bodies of glass"),
+        Effect::ClearPanes => materials("clear panes"),
+        Effect::DiffuseTransmission => materials("diffuse light goes through"),
+        Effect::CutOuts => materials("with holes cut by a mask"),
+        Effect::Transparency => materials("transparent"),
     })
 }
 
@@ -84,7 +84,7 @@ fn absent(effect: Effect, transport: &Transport) -> &'static str {
 }
 
 fn area_lights(count: u64, tracer: &Tracer) -> String {
-    let shapes = counted(count, "shape glows", "shapes glow");
+    let shapes = counted(count, "glowing triangle or rectangle", "glowing triangles or rectangles");
     match tracer.area_light_flux() {
         Some(flux) => format!("{shapes}, {:.4} lm in all", luminance(flux)),
         None => shapes,
