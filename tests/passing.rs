@@ -5,7 +5,7 @@ mod common;
 
 use bevy_kiln::artefact::StableId;
 use bevy_kiln::bake::{CancelToken, MeterPoint, PictureSettings, render_picture};
-use bevy_kiln::math::{Welford, corner_parallel_rectangle, welch_t_test};
+use bevy_kiln::math::{Welford, corner_parallel_rectangle, polygon_irradiance, welch_t_test};
 use bevy_kiln::scene::{
     Alpha, Camera, DirectionalLight, Filter, Light, Material, PointLight, Scattering, Scene, Standard, Texels, Texture,
     TextureRef, UvChannel, Wrap,
@@ -14,7 +14,7 @@ use bevy_kiln::trace::{Effect, Estimator, Transport};
 use common::meter::{at, by, mean, read};
 use common::scenes::{SceneBuilder, glowing};
 use common::statistics::mean_within;
-use glam::{Affine2, Vec2, Vec3, Vec4};
+use glam::{Affine2, DVec3, Vec2, Vec3, Vec4};
 use std::f64::consts::PI;
 
 const ESTIMATORS: [Estimator; 3] = [Estimator::Mis, Estimator::Light, Estimator::Bsdf];
@@ -280,6 +280,27 @@ fn a_camera_and_the_light_each_pass_by_chances_of_their_own() {
     let picture = render_picture(&scene, &camera, &settings, &(), &CancelToken::default()).unwrap();
     // Light that comes in beyond the rim is less than 0.1 %.
     mean_within(f64::from(picture.radiance[0].x), f64::from(picture.stderr[0].x), 0.25, 0.01).unwrap();
+}
+
+/// Sparks that are added to the picture light the room as much as they show: by alpha, and without a shadow.
+#[test]
+fn what_is_added_to_the_picture_glows() {
+    let lamp = |alpha: Alpha, opacity: f32| {
+        let mut material = Material { alpha, ..glowing(0.0, 2.0) };
+        material.base_colour.w = opacity;
+        SceneBuilder::default().quad("lamp", Vec3::new(-0.5, 2.0, -0.5), [Vec3::X, Vec3::Z], material).build()
+    };
+    let point = Vec3::new(0.2, 0.0, 0.1);
+    let corners =
+        [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)].map(|(x, z)| (Vec3::new(x, 2.0, z) - point).as_dvec3());
+    let whole = 2.0 * polygon_irradiance(&corners, DVec3::Y).abs();
+    for (alpha, share) in [(Alpha::Add, 0.25), (Alpha::Blend, 0.25), (Alpha::Multiply, 0.0)] {
+        for estimator in ESTIMATORS {
+            let reading = read(&lamp(alpha, 0.25), &[at(point, Vec3::Y)], 1 << 16, by(estimator))[0];
+            mean_within(reading.irradiance.x, reading.stderr.x, share * whole, 0.02 * whole)
+                .unwrap_or_else(|reason| panic!("{alpha:?}, {estimator:?}: {reason}"));
+        }
+    }
 }
 
 /// A bulb so large that a clear pane cuts through it is one bulb, on whichever side of the pane it is met.

@@ -117,9 +117,9 @@ pub enum Alpha {
     },
     /// The share of the surface that is there; the rest lets light pass straight.
     Blend,
-    /// Light passes straight, multiplied by 1 − alpha · (1 − colour); nothing is reflected.
+    /// Light passes straight, multiplied by 1 − alpha · (1 − colour); nothing is reflected, nothing glows.
     Multiply,
-    /// Light passes straight as if nothing were there, and nothing is reflected.
+    /// Light passes straight as if nothing were there, and nothing is reflected; of the glow, alpha is added.
     Add,
 }
 

@@ -24,8 +24,10 @@ pub(super) struct Place {
 pub(super) struct Passage {
     /// Share that passes straight, per channel.
     pub(super) transmittance: Vec3,
-    /// Share of the surface that is there to scatter and to glow.
+    /// Share of the surface that is there to scatter.
     pub(super) presence: f32,
+    /// Share of its glow that is seen.
+    pub(super) glow: f32,
 }
 
 impl Hit {
@@ -99,7 +101,9 @@ impl Tracer {
             let cosine = -frame.normal.dot(direction);
             transmittance += presence * self.bsdf::<K>(surface, place, side).straight(cosine);
         }
-        Passage { transmittance, presence }
+        // What is added to the picture blocks nothing and yet glows.
+        let glow = if surface.alpha == Alpha::Add { alpha } else { presence };
+        Passage { transmittance, presence, glow }
     }
 
     /// Share of the plain glow that a sampled point of a glowing surface gives: its texture, and what of it is there.
@@ -122,7 +126,7 @@ impl Tracer {
             share = self.look_up(surface, surface.emission_texture, place).truncate().max(Vec3::ZERO);
         }
         if K & PASSING != 0 && surface.passes {
-            share *= self.passage::<K>(surface, place, direction).presence;
+            share *= self.passage::<K>(surface, place, direction).glow;
         }
         share
     }

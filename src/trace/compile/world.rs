@@ -6,7 +6,7 @@ use crate::scene::{EnvironmentMap, Instance, Light, Mesh, Scene};
 use crate::trace::accel::Accel;
 use crate::trace::attributes::{Attributes, Needs};
 use crate::trace::bsdf::AlbedoTables;
-use crate::trace::kernel::{LAYERED, TEXTURED, kernel_for};
+use crate::trace::kernel::{LAYERED, PASSING, TEXTURED, kernel_for};
 use crate::trace::light::{Emitter, EmitterShape, Sources};
 use crate::trace::material::{Surface, View};
 use crate::trace::sampler::{Dimensions, Sampler, Sobol};
@@ -169,7 +169,7 @@ impl World {
         tracer
     }
 
-    /// Mean radiance of a glowing triangle with its texture [cd/m²].
+    /// Mean radiance of a glowing triangle with its texture, where it is there [cd/m²].
     fn mean_glow(&self, triangle: u32) -> Vec3 {
         let tracer = &self.tracer;
         let surface = tracer.surface(triangle);
@@ -177,7 +177,14 @@ impl World {
             let [u, v, ..] = Sobol::new(0, index).draw(Dimensions::Start);
             square_to_triangle(Vec2::new(u, v)).to_array()
         };
-        let glow = |index| tracer.glow::<TEXTURED>(surface, Place { triangle, barycentric: point(index) });
+        let glow = |index| {
+            let place = Place { triangle, barycentric: point(index) };
+            let is_there = match surface.passes {
+                true => tracer.passage::<{ TEXTURED | PASSING }>(surface, place, Vec3::Y).glow,
+                false => 1.0,
+            };
+            is_there * tracer.glow::<TEXTURED>(surface, place)
+        };
         let mean = (0..GLOW_POINTS).map(glow).sum::<Vec3>() / GLOW_POINTS as f32;
         mean.max(surface.emitted_radiance * LEAST_GLOW)
     }

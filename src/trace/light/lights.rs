@@ -158,6 +158,12 @@ impl Lights {
         self.has_delta
     }
 
+    /// Whether any source blocks nothing and has a size, so that a ray may pass it.
+    #[inline]
+    pub(in crate::trace) fn has_passable(&self) -> bool {
+        !self.passable.is_empty()
+    }
+
     /// The sources that block nothing and that a ray passes on a way that begins at `ctx.position`, moved off its
     /// surface, or straight before it.
     pub(in crate::trace) fn passed<'a>(

@@ -60,6 +60,12 @@ impl Passable {
         self.add(right);
     }
 
+    /// Whether there is none.
+    #[inline]
+    pub(super) fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
     /// The sources whose boxes a ray meets before `end`.
     pub(super) fn candidates(&self, origin: Vec3, direction: Vec3, end: f32) -> Candidates<'_> {
         // Finite, so that a ray along a side gives no NaN.

@@ -2,9 +2,11 @@
 
 use super::PathStart;
 use crate::math::Frame;
+use crate::trace::accel::Hit;
 use crate::trace::bsdf::{Bsdf, Density, Lambert};
 use crate::trace::kernel::{DISTANT, LAYERED, PASSING, TEXTURED};
 use crate::trace::light::{End, LightContext, Way};
+use crate::trace::material::Surface;
 use crate::trace::mis::power_heuristic;
 use crate::trace::sampler::{Dimensions, Sampler};
 use crate::trace::shade::Place;
@@ -170,7 +172,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             *self.rays += 1;
             let hit = tracer.accel.closest(origin, ray.direction, f32::INFINITY);
             let end = hit.map_or(f32::INFINITY, |hit| hit.t);
-            if ray.survival.is_some() {
+            if ray.survival.is_some() && tracer.lights.has_passable() {
                 self.meet_sources(ray, origin, passed, end);
             }
             let Some(hit) = hit else {
@@ -193,6 +195,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
                 u_pass /= chance;
                 self.throughput *= passage.transmittance / chance;
             } else if chance > 0.0 {
+                self.radiance += passage.glow * self.glow_met(ray, hit, surface, passed);
                 self.throughput *= passage.transmittance;
             } else {
                 return None;
@@ -203,12 +206,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         };
         let shape = &tracer.triangles[hit.triangle as usize];
         let place = hit.place();
-        if surface.shines(shape, ray.direction) {
-            let source = tracer.emitter_of[hit.triangle as usize];
-            let weight =
-                self.weight_of_met(ray, |context| tracer.lights.pdf(source, context, ray.direction, passed + hit.t));
-            self.radiance += self.throughput * tracer.glow::<K>(surface, place) * weight;
-        }
+        self.radiance += self.glow_met(ray, hit, surface, passed);
         if ray.survival.is_some() && self.max_bounces.is_some_and(|cap| self.number >= cap) {
             return None;
         }
@@ -226,6 +224,19 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             self.throughput /= survival;
         }
         Some(vertex)
+    }
+
+    /// What the glow of a surface adds that a ray meets, after what it passed.
+    #[inline]
+    fn glow_met(&self, ray: &Ray, hit: Hit, surface: &Surface, passed: f32) -> Vec3 {
+        let tracer = self.tracer;
+        if !surface.shines(&tracer.triangles[hit.triangle as usize], ray.direction) {
+            return Vec3::ZERO;
+        }
+        let source = tracer.emitter_of[hit.triangle as usize];
+        let weight =
+            self.weight_of_met(ray, |context| tracer.lights.pdf(source, context, ray.direction, passed + hit.t));
+        self.throughput * tracer.glow::<K>(surface, hit.place()) * weight
     }
 
     /// What a ray finds where it meets a triangle.
@@ -330,7 +341,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             };
             return if is_blocked { Vec3::ZERO } else { share };
         }
-        let stops = |hit: crate::trace::accel::Hit| {
+        let stops = |hit: Hit| {
             let surface = tracer.surface(hit.triangle);
             if !surface.passes {
                 return true;
