@@ -105,7 +105,7 @@ fn a_sun_without_a_size_is_warned_of_where_a_mirror_should_show_it() {
         plan.warnings.iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     let found = warnings(0.0, Scattering::Mirror);
-    assert!(found.len() == 1 && found[0].starts_with("lights without a size (1) neither shine through"), "{found:?}");
+    assert!(found.len() == 1 && found[0].starts_with("lights without a size (1) shine neither through"), "{found:?}");
     let rough = Scattering::Standard(Box::new(Standard { metallic: 1.0, ..Standard::default() }));
     for (diameter, scattering) in [(0.01, Scattering::Mirror), (0.0, rough), (0.0, Scattering::Diffuse)] {
         assert_eq!(warnings(diameter, scattering), [""; 0]);

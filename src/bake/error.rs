@@ -89,8 +89,8 @@ pub enum BakeWarning {
     },
     /// Light that no path finds: from lights without a size by way of perfectly smooth surfaces.
     #[error(
-        "lights without a size ({lights}) neither shine through bodies of perfectly smooth glass nor off perfectly \
-         smooth mirrors ({materials} materials); give such a light a radius (a sun a SunDisk), or a pane no thickness"
+        "lights without a size ({lights}) shine neither through perfectly smooth bodies of glass nor off perfectly \
+         smooth mirrors (materials: {materials}); give such a light a radius (a sun a SunDisk), or a pane no thickness"
     )]
     Unfindable {
         /// How many such lights.

@@ -14,5 +14,7 @@ fn a_room_with_one_of_everything_calls_for_every_effect_that_a_file_can() {
     let off: BTreeSet<&str> = off.map(|effect| effect["effect"].as_str().unwrap()).collect();
     // A sky is for the command line to give, and translucent leaves are what Bevy's loader does not read.
     assert_eq!(off, BTreeSet::from(["constant-sky", "diffuse-transmission", "environment-map"]));
-    assert_eq!(json["warnings"], serde_json::json!([]));
+    // glTF has no size for lights, and the room has a ball of glass.
+    let warnings: Vec<&str> = json["warnings"].as_array().unwrap().iter().filter_map(|line| line.as_str()).collect();
+    assert!(warnings.len() == 1 && warnings[0].starts_with("lights without a size (3)"), "{warnings:?}");
 }
