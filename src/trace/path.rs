@@ -13,6 +13,7 @@
 //! All of it is generic over the kernel `K` ([`super::kernel`]).
 
 mod start;
+mod vertex;
 mod walk;
 
 pub(crate) use start::PathStart;
@@ -22,7 +23,8 @@ use super::sampler::Sampler;
 use super::tracer::Tracer;
 use super::transport::Transport;
 use glam::Vec3;
-use walk::{Ray, Walk};
+use vertex::Ray;
+use walk::Walk;
 
 impl Tracer {
     /// One sample of E/π at a start [cd/m²]. Adds the rays that it traced to `rays`.

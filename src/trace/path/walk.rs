@@ -1,6 +1,7 @@
 //! One path: from a vertex along a ray to the next vertex, and what light it finds on the way.
 
 use super::PathStart;
+use super::vertex::{Ray, Vertex};
 use crate::math::Frame;
 use crate::trace::accel::Hit;
 use crate::trace::bsdf::{Bsdf, Density, Lambert};
@@ -41,44 +42,6 @@ pub(super) struct Walk<'t, const K: u32, S> {
     number: u32,
     /// How much the body that the path is in absorbs [1/m]; zero outside.
     absorption: Vec3,
-}
-
-/// Where a path scatters.
-struct Vertex<'t> {
-    position: Vec3,
-    /// Where rays start that leave on the side of `geometric_normal` [m].
-    origin: Vec3,
-    geometric_normal: Vec3,
-    frame: Frame,
-    /// Back to where the path came from, in the frame.
-    wo: Vec3,
-    /// What is there if the kernel knows Lambert's surface only.
-    lambert: Lambert,
-    /// What is there if it knows others.
-    bsdf: Bsdf<'t>,
-    /// What rays leave on the other side; for kernels that know such.
-    triangle: Option<&'t TriangleShape>,
-    /// What they find there: the absorption of a body [1/m], or of the outside.
-    beyond: Option<Vec3>,
-}
-
-/// Where a path goes on.
-pub(super) struct Ray {
-    origin: Vec3,
-    direction: Vec3,
-    /// The vertex that it left.
-    context: LightContext,
-    /// How densely its direction was found.
-    density: Density,
-    /// Number that decides whether the path survives the next vertex; `None` for a camera's ray, which always does.
-    survival: Option<f32>,
-}
-
-impl Ray {
-    pub(super) fn of_camera(origin: Vec3, direction: Vec3) -> Self {
-        let context = LightContext { position: origin, normal: None };
-        Self { origin, direction, context, density: Density::Delta, survival: None }
-    }
 }
 
 impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
@@ -405,26 +368,6 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             (_, Estimator::Light) => 0.0,
             (Density::Smooth(own), Estimator::Mis) => power_heuristic(own, pdf(&ray.context)),
         }
-    }
-}
-
-impl Vertex<'_> {
-    /// What light sampling must know of it.
-    #[inline]
-    fn context<const K: u32>(&self) -> LightContext {
-        let is_one_sided = K & LAYERED == 0 || !self.bsdf.transmits();
-        LightContext { position: self.position, normal: is_one_sided.then_some(self.frame.normal) }
-    }
-
-    /// Where a ray in a direction starts; `None` where a shading normal sends it to the wrong side of the surface.
-    #[inline]
-    fn origin_towards<const K: u32>(&self, local: Vec3, direction: Vec3) -> Option<Vec3> {
-        let is_before = self.geometric_normal.dot(direction) > 0.0;
-        if K & LAYERED != 0 && local.z < 0.0 {
-            let triangle = self.triangle.filter(|_| self.geometric_normal.dot(direction) < 0.0)?;
-            return Some(triangle.leave(self.position, direction));
-        }
-        is_before.then_some(self.origin)
     }
 }
 
