@@ -9,6 +9,7 @@
 
 use super::fresnel::{SCHLICK_AVERAGE, Schlick, schlick_weight};
 use super::ggx::{Ggx, SMOOTH_BELOW, mirrored};
+use super::glass_albedo::GlassTables;
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
@@ -34,6 +35,8 @@ pub(in crate::trace) struct AlbedoTables {
     nodes: Vec<Albedo>,
     /// By roughness: the fourth root of what is missing, which is nearly linear, and the share of F90.
     averages: Vec<[f32; 2]>,
+    /// Of rough interfaces of glass.
+    pub(super) glass: GlassTables,
 }
 
 /// An albedo by its share of F0 and of F90.
@@ -75,7 +78,7 @@ pub(super) struct RoughnessAlbedo<'a> {
 }
 
 impl AlbedoTables {
-    /// Computes the tables: some tens of milliseconds. Always the same.
+    /// Computes the tables: some 200 milliseconds. Always the same.
     pub(in crate::trace) fn new() -> Self {
         let rule = Quadrature::new(QUADRATURE);
         let mut nodes = Vec::with_capacity(ROUGHNESSES * ANGLES);
@@ -87,7 +90,7 @@ impl AlbedoTables {
                 nodes.push(ggx.map_or(smooth(cos), |ggx| rule.albedo(&ggx, cos)));
             }
         }
-        let mut tables = Self { nodes, averages: vec![[0.0; 2]; AVERAGES] };
+        let mut tables = Self { nodes, averages: vec![[0.0; 2]; AVERAGES], glass: GlassTables::new() };
         let averages = (0..AVERAGES).map(|index| {
             let roughness = roughness_at(index as f32 / (AVERAGES - 1) as f32);
             let average = tables.at(roughness.max(1.001 * least())).integrated();
@@ -173,13 +176,13 @@ fn least() -> f32 {
 
 /// Where a perceptual roughness lies among the rows, in [0, 1]: they are dense where it is small.
 #[inline]
-fn height_of(perceptual_roughness: f32) -> f32 {
+pub(super) fn height_of(perceptual_roughness: f32) -> f32 {
     let (r, least) = (perceptual_roughness.clamp(least(), 1.0), least());
     (r - least) * (1.0 + DENSE_BELOW) / ((r + DENSE_BELOW) * (1.0 - least))
 }
 
 /// The inverse of [`height_of`].
-fn roughness_at(height: f32) -> f32 {
+pub(super) fn roughness_at(height: f32) -> f32 {
     let (y, least) = (height * (1.0 - least()), least());
     (least * (1.0 + DENSE_BELOW) + y * DENSE_BELOW) / (1.0 + DENSE_BELOW - y)
 }
@@ -205,7 +208,7 @@ fn smooth(cos: f32) -> Albedo {
 
 /// The cell of `nodes` nodes over [0, 1] in which `x` lies, and where in it.
 #[inline]
-fn cell(x: f32, nodes: usize) -> (usize, f32) {
+pub(super) fn cell(x: f32, nodes: usize) -> (usize, f32) {
     let at = x * (nodes - 1) as f32;
     let index = (at as usize).min(nodes - 2);
     (index, at - index as f32)

@@ -35,7 +35,7 @@ impl Ggx {
 
     /// cos θ · √(1 + α² tan² θ): the projected area of the microsurface is ½ (cos θ + this).
     #[inline]
-    fn slant(&self, w: Vec3) -> f32 {
+    pub(super) fn slant(&self, w: Vec3) -> f32 {
         (w.z * w.z + self.alpha * self.alpha * (w.x * w.x + w.y * w.y)).sqrt()
     }
 

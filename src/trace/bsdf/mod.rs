@@ -6,12 +6,14 @@
 //! direction. Every surface scatters the same way from both of its sides, but for the index of refraction, whose
 //! quotient the caller turns. Knows no textures and no world space. What scatters how much: `docs/albedo.md`.
 
+mod again;
 mod albedo;
 mod clearcoat;
 mod dielectric;
 mod diffuse_transmission;
 mod fresnel;
 mod ggx;
+mod glass_albedo;
 mod lambert;
 mod mirror;
 mod phong;

@@ -53,7 +53,7 @@ pub(in crate::trace) struct Standard<'a> {
 #[derive(Clone, Copy, Debug)]
 enum Glass<'a> {
     Pane(Pane<'a>),
-    Body(Dielectric),
+    Body(Dielectric<'a>),
 }
 
 /// The chance of each lobe; together 1.
@@ -87,7 +87,9 @@ impl<'a> Standard<'a> {
             Interior::ThinWalled => {
                 Glass::Pane(Pane::new(Schlick::new(dielectric), at.base_colour, at.perceptual_roughness, tables))
             }
-            Interior::Volume { .. } => Glass::Body(Dielectric::new(at.eta, at.base_colour, at.perceptual_roughness)),
+            Interior::Volume { .. } => {
+                Glass::Body(Dielectric::new(at.eta, at.base_colour, at.perceptual_roughness, tables))
+            }
         };
         Self {
             coat: Clearcoat::new(at.clearcoat, at.clearcoat_perceptual_roughness, tables),

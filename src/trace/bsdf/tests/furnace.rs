@@ -10,6 +10,9 @@ use crate::math::testing::integrate;
 use crate::trace::sampler::{Dimensions, Sampler, Sobol};
 use glam::{DVec3, Vec3};
 
+/// Rows of the quadrature over directions, on each side.
+const HEIGHTS: u32 = 20;
+
 /// Nodes of the quadrature over variates.
 const NODES: u64 = 1 << 15;
 
@@ -34,8 +37,10 @@ fn integrated(subject: &Subject, wo: Vec3) -> f64 {
             let (wi, solid_angle) = direction(s[0], 0.5 + sign * 0.5 * s[1]);
             0.5 * flux * solid_angle * f64::from((subject.evaluate)(wo, wi).x)
         };
-        let step = [1.0 / COLUMNS as f64, 0.125];
-        let cells = (0..COLUMNS).flat_map(|i| (0..8).map(move |j| [i as f64 * step[0], f64::from(j) * step[1]]));
+        // Where facets seen edge-on begin to refract, the function jumps along a row: rows must be narrow, since a jump
+        // at the rim of one falls between the nodes.
+        let step = [1.0 / COLUMNS as f64, 1.0 / f64::from(HEIGHTS)];
+        let cells = (0..COLUMNS).flat_map(|i| (0..HEIGHTS).map(move |j| [i as f64 * step[0], f64::from(j) * step[1]]));
         cells.map(|low| integrate(&at, low, step, 1e-6)).sum::<f64>()
     };
     side(1.0, 1.0) + side(-1.0, f64::from(subject.eta * subject.eta))
@@ -74,11 +79,11 @@ pub(super) fn share(subject: &Subject, wo: Vec3) -> f64 {
     single + integrated(subject, wo)
 }
 
-const ROUGHNESSES: [f32; 7] = [0.0, 0.15, 0.25, 0.4, 0.6, 0.8, 1.0];
-const ALL_ANGLES: [f32; 6] = [0.0, 30.0, 60.0, 75.0, 85.0, 89.0];
+pub(super) const ROUGHNESSES: [f32; 7] = [0.0, 0.15, 0.25, 0.4, 0.6, 0.8, 1.0];
+pub(super) const ALL_ANGLES: [f32; 6] = [0.0, 30.0, 60.0, 75.0, 85.0, 89.0];
 
 /// The largest and the smallest albedo over roughness and angle.
-fn range(make: impl Fn(f32) -> Subject) -> (f64, f64) {
+pub(super) fn range(make: impl Fn(f32) -> Subject) -> (f64, f64) {
     let mut range = (f64::INFINITY, f64::NEG_INFINITY);
     for roughness in ROUGHNESSES {
         let subject = make(roughness);
@@ -167,19 +172,6 @@ fn a_white_pane_loses_nothing() {
             assert!((all - 1.0).abs() < TABLES_OFF, "{roughness}, {degrees}°: {all}");
         }
     }
-}
-
-#[test]
-fn glass_never_shines_more_than_it_gets() {
-    for eta in [1.5, 1.0 / 1.5, 2.4, 1.0 / 2.4] {
-        let (low, high) = range(|roughness| dielectric(roughness, eta, Vec3::ONE));
-        assert!(low > 0.3 && high < 1.0 + 1e-3, "{eta}: {low} to {high}");
-    }
-    // Planted: radiance that does not follow the index.
-    let mut glass = dielectric(0.5, 1.5, Vec3::ONE);
-    let evaluate = glass.evaluate;
-    glass.evaluate = Box::new(move |wo, wi| evaluate(wo, wi) * if wi.z < 0.0 { 2.25 } else { 1.0 });
-    assert!(share(&glass, Vec3::Z) > 1.5);
 }
 
 /// Lafortune and Willems: the glossy lobe reflects all of its share at normal incidence and less at every other angle.

@@ -6,6 +6,7 @@ mod deltas;
 mod density;
 mod extremes;
 mod furnace;
+mod glass;
 mod lambert;
 mod page;
 mod reciprocity;

@@ -9,7 +9,7 @@ use crate::math::testing::Random;
 use glam::Vec3;
 
 /// The worst relative difference between the way there and the way back; `turned` is the surface seen from behind.
-fn worst(subject: &Subject, turned: &Subject) -> f32 {
+pub(super) fn worst(subject: &Subject, turned: &Subject) -> f32 {
     let mut random = Random::new(21);
     let mut worst = 0.0_f32;
     let mut seen = [0, 0];

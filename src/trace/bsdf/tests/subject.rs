@@ -115,7 +115,7 @@ pub(super) fn clearcoat(roughness: f32, strength: f32) -> Subject {
 }
 
 pub(super) fn dielectric(roughness: f32, eta: f32, tint: Vec3) -> Subject {
-    let glass = Dielectric::new(eta, tint, roughness);
+    let glass = Dielectric::new(eta, tint, roughness, &TABLES);
     let respond = move |wo: Vec3, wi: Vec3| glass.respond(wo, wi);
     lobe(format!("glass {roughness}, {eta}"), move |wo, u| glass.propose(wo, u), respond, eta)
 }
