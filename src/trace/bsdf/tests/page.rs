@@ -117,7 +117,8 @@ fn tables() -> Vec<Table> {
         ),
         over_roughness(
             "Glass from outside",
-            "Index 1.5, both sides together, with the light that met more than one facet (`dielectric.rs`, `again.rs`).",
+            "Index 1.5, both sides together, with the light that met more than one facet (`dielectric.rs`, \
+             `again.rs`).",
             |roughness| dielectric(roughness, 1.5, Vec3::ONE),
         ),
         over_roughness("Glass from inside", "The same interface from its dense side.", |roughness| {
