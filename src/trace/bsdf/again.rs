@@ -38,7 +38,7 @@ impl<'a> Again<'a> {
     /// From the index on the far side over that on the near one, and the colour of what crosses.
     #[inline]
     pub(super) fn new(eta: f32, tint: Vec3, perceptual_roughness: f32, tables: &'a AlbedoTables) -> Self {
-        let [near, far] = [eta, eta.recip()].map(|eta| tables.glass.at(eta, perceptual_roughness));
+        let [near, far] = [eta, eta.recip()].map(|eta| tables.glass().at(eta, perceptual_roughness));
         let [from_near, from_far] = [near.average(), eta * eta * far.average()];
         let reflectance = average_reflectance(eta.max(eta.recip()));
         let crosses = (1.0 - reflectance * reflectance) * quotient(from_near.min(from_far), from_near);

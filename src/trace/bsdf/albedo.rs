@@ -12,6 +12,7 @@ use super::ggx::{Ggx, SMOOTH_BELOW, mirrored};
 use super::glass_albedo::GlassTables;
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
+use std::sync::OnceLock;
 
 /// Nodes over the angle.
 const ANGLES: usize = 64;
@@ -35,8 +36,8 @@ pub(in crate::trace) struct AlbedoTables {
     nodes: Vec<Albedo>,
     /// By roughness: the fourth root of what is missing, which is nearly linear, and the share of F90.
     averages: Vec<[f32; 2]>,
-    /// Of rough interfaces of glass.
-    pub(super) glass: GlassTables,
+    /// Of rough interfaces of glass; made at the first of them.
+    glass: OnceLock<GlassTables>,
 }
 
 /// An albedo by its share of F0 and of F90.
@@ -78,6 +79,12 @@ pub(super) struct RoughnessAlbedo<'a> {
 }
 
 impl AlbedoTables {
+    /// The tables of rough interfaces of glass. Few scenes have one, and they take longer than all others.
+    #[inline]
+    pub(super) fn glass(&self) -> &GlassTables {
+        self.glass.get_or_init(GlassTables::new)
+    }
+
     /// Computes the tables: some 200 milliseconds. Always the same.
     pub(in crate::trace) fn new() -> Self {
         let rule = Quadrature::new(QUADRATURE);
@@ -90,7 +97,7 @@ impl AlbedoTables {
                 nodes.push(ggx.map_or(smooth(cos), |ggx| rule.albedo(&ggx, cos)));
             }
         }
-        let mut tables = Self { nodes, averages: vec![[0.0; 2]; AVERAGES], glass: GlassTables::new() };
+        let mut tables = Self { nodes, averages: vec![[0.0; 2]; AVERAGES], glass: OnceLock::new() };
         let averages = (0..AVERAGES).map(|index| {
             let roughness = roughness_at(index as f32 / (AVERAGES - 1) as f32);
             let average = tables.at(roughness.max(1.001 * least())).integrated();
