@@ -4,10 +4,10 @@
 mod common;
 
 use bevy_kiln::bake::{MeterPoint, MeterReading};
-use bevy_kiln::math::{Welford, welch_t_test};
+use bevy_kiln::math::Welford;
 use bevy_kiln::scene::Scene;
 use bevy_kiln::trace::{Estimator, Transport};
-use common::meter::{at, on_walls, read};
+use common::meter::{agree, at, on_walls, read};
 use common::scenes::{SceneBuilder, generalised_furnace, glowing, grey, lit_room};
 use glam::{Vec2, Vec3};
 
@@ -28,16 +28,6 @@ fn runs(scene: &Scene, points: &[MeterPoint], samples: u32, estimator: Estimator
         means.push(readings.iter().map(|reading| reading.irradiance.y).sum::<f64>() / points.len() as f64);
     }
     means
-}
-
-/// Whether two estimators agree: not told apart by Welch's test, and seen well enough that 1 % would be.
-fn agree(a: &Welford, b: &Welford) -> Result<(), String> {
-    let spread = a.standard_error().hypot(b.standard_error());
-    if 4.0 * spread > 0.01 * a.mean() {
-        return Err(format!("too noisy to see 1 %: {} and {} ± {spread}", a.mean(), b.mean()));
-    }
-    let welch = welch_t_test(a, b).ok_or("no spread to judge by")?;
-    if welch.p_value < 1e-4 { Err(format!("{} and {}: p = {}", a.mean(), b.mean(), welch.p_value)) } else { Ok(()) }
 }
 
 fn assert_agreement(scene: &Scene, points: &[MeterPoint], samples: [u32; 3]) {

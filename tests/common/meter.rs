@@ -1,6 +1,7 @@
 //! Readings of the light meter, and means over them.
 
 use bevy_kiln::bake::{CancelToken, MeterPoint, MeterReading, MeterSettings, measure_irradiance};
+use bevy_kiln::math::{Welford, welch_t_test};
 use bevy_kiln::scene::Scene;
 use bevy_kiln::trace::{Estimator, Transport};
 use glam::{FloatExt, Vec3};
@@ -49,4 +50,14 @@ pub fn on_walls(low: Vec3, high: Vec3, per_side: u32) -> Vec<MeterPoint> {
         }
     }
     points
+}
+
+/// Whether two estimators agree: not told apart by Welch's test, and seen well enough that 1 % would be.
+pub fn agree(a: &Welford, b: &Welford) -> Result<(), String> {
+    let spread = a.standard_error().hypot(b.standard_error());
+    if 4.0 * spread > 0.01 * a.mean() {
+        return Err(format!("too noisy to see 1 %: {} and {} ± {spread}", a.mean(), b.mean()));
+    }
+    let welch = welch_t_test(a, b).ok_or("no spread to judge by")?;
+    if welch.p_value < 1e-4 { Err(format!("{} and {}: p = {}", a.mean(), b.mean(), welch.p_value)) } else { Ok(()) }
 }

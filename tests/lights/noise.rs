@@ -1,10 +1,10 @@
 //! How noisy light is at equal samples, and whether all ways to sample it mean the same.
 
-use super::common::meter::{at, on_walls, read};
+use super::common::meter::{agree, at, on_walls, read};
 use super::common::scenes::{SceneBuilder, grey};
 use super::{ALL, lit_by, picture, point_light, sphere_light, sun, under, up};
 use bevy_kiln::bake::MeterPoint;
-use bevy_kiln::math::{Welford, welch_t_test};
+use bevy_kiln::math::Welford;
 use bevy_kiln::scene::{Light, Scene, SpotLight};
 use bevy_kiln::trace::{Estimator, Transport};
 use glam::{Quat, Vec2, Vec3};
@@ -78,16 +78,6 @@ fn five_hundred_small_lamps_are_as_good_as_a_large_one() {
         }
     }
     assert!(worst < 2.0, "{worst}");
-}
-
-/// Whether two estimators agree: not told apart by Welch's test, and seen well enough that 1 % would be.
-fn agree(a: &Welford, b: &Welford) -> Result<(), String> {
-    let spread = a.standard_error().hypot(b.standard_error());
-    if 4.0 * spread > 0.01 * a.mean() {
-        return Err(format!("too noisy to see 1 %: {} and {} ± {spread}", a.mean(), b.mean()));
-    }
-    let welch = welch_t_test(a, b).ok_or("no spread to judge by")?;
-    if welch.p_value < 1e-4 { Err(format!("{} and {}: p = {}", a.mean(), b.mean(), welch.p_value)) } else { Ok(()) }
 }
 
 /// A room with a window and a shelf.

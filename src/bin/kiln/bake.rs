@@ -39,6 +39,9 @@ pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> 
     warn(&late);
     warnings.extend(known.into_iter().chain(late));
     talk.report("texels", report);
+    if report.energy_balance.is_none() {
+        talk.say("  energy balance: none (light escapes or is cut, or not all surfaces are diffuse)");
+    }
     talk.say(format_args!("wrote {} files into {}", written.files.len(), args.output.display()));
     if args.json {
         Talk::Out.say(summary(report, &written, &warnings));

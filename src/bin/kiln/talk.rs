@@ -69,9 +69,8 @@ impl Talk {
                 self.say(format_args!("  forced {how}: {}", names.join(", ")));
             }
         }
-        match balance {
-            Some(balance) => self.say(format_args!("  energy balance: {balance:.5} (absorbed / emitted)")),
-            None => self.say("  energy balance: none (light escapes, was cut, or surfaces are not all diffuse)"),
+        if let Some(balance) = balance {
+            self.say(format_args!("  energy balance: {balance:.5} (absorbed / emitted)"));
         }
     }
 }
