@@ -12,7 +12,8 @@ pub struct Material {
     pub name: String,
     /// Linear colour in [0, 1] and coverage (alpha). What the colour stands for is up to [`Scattering`].
     pub base_colour: Vec4,
-    /// Multiplies the base colour, alpha included. The mesh's own colours do too.
+    /// Multiplies the base colour, alpha included. The mesh's own colours do too; the product is held to [0, 1], since
+    /// a surface brighter than that would make light.
     pub base_colour_texture: Option<TextureRef>,
     /// How arriving light leaves again.
     pub scattering: Scattering,

@@ -75,7 +75,7 @@ impl Surface {
     /// Every texture that it looks up.
     pub(super) fn textures(&self) -> impl Iterator<Item = TextureRef> + '_ {
         let standard = match &self.scattering {
-            Scattering::Standard(standard) => Some(standard_textures(standard)),
+            Scattering::Standard(standard) => Some(standard.textures()),
             _ => None,
         };
         let own = [self.base_colour_texture, self.emission_texture, self.normal_map.map(|map| map.texture)];
@@ -193,7 +193,7 @@ pub(super) fn called_by(material: &Material, mesh: &Mesh) -> EffectSet {
         _ => None,
     };
     let standard_has = |has: fn(&Standard) -> bool| standard.is_some_and(has);
-    let uses_maps = standard.is_some_and(|standard| standard_textures(standard).into_iter().any(|map| map.is_some()));
+    let uses_maps = standard.is_some_and(|standard| standard.textures().into_iter().any(|map| map.is_some()));
     let has_looks = surface.scattering != Scattering::None || surface.alpha != Alpha::Opaque;
     call(Effect::AreaLights, glows);
     call(Effect::Textures, has_looks && is_textured || uses_maps);
@@ -217,16 +217,6 @@ pub(super) fn called_by(material: &Material, mesh: &Mesh) -> EffectSet {
         Alpha::Multiply | Alpha::Add => call(Effect::Transparency, true),
     }
     calls
-}
-
-fn standard_textures(standard: &Standard) -> [Option<TextureRef>; 5] {
-    [
-        standard.metallic_roughness_texture,
-        standard.specular_transmission_texture,
-        standard.diffuse_transmission_texture,
-        standard.clearcoat_texture,
-        standard.clearcoat_roughness_texture,
-    ]
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::common::statistics::mean_within;
 use super::{ALL, above_the_horizon, assert_point, lit_by, point_light, sphere_light, up};
 use bevy_kiln::math::sphere_above_horizon;
 use bevy_kiln::scene::{Light, PointLight, SpotLight};
-use bevy_kiln::trace::Transport;
+use bevy_kiln::trace::{Estimator, Transport};
 use glam::Vec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -23,6 +23,20 @@ fn a_sphere_above_the_horizon() {
     }
     let truth = 0.196349541;
     assert_point(&lit_by([sphere_light("bulb", Vec3::Y * 2.0, 1.0, 0.5)]), up(), truth, 1e-3, &ALL);
+}
+
+/// A room and its bulb made smaller together keep their light: no length of the program's own decides what is a sphere.
+/// And a bulb too small for any direction to tell gives what a point gives.
+#[test]
+fn a_bulb_of_any_size() {
+    for scale in [1e-12_f32, 1e-6, 1.0, 1e6] {
+        let scene = lit_by([sphere_light("bulb", Vec3::Y * 2.0 * scale, 1.0, 0.5 * scale)]);
+        assert_point(&scene, up(), 0.196349541, 1e-3, &ALL);
+    }
+    for radius in [1e-6_f32, 1e-12, 1e-20, 0.0] {
+        let scene = lit_by([Light::Point(point_light("bulb", Vec3::new(0.6, 0.8, 0.0), 2.0, radius))]);
+        assert_point(&scene, up(), 1.6, 1e-4, &[Estimator::Mis, Estimator::Light]);
+    }
 }
 
 #[test]

@@ -80,7 +80,8 @@ impl Standard {
         kinds
     }
 
-    fn textures(&self) -> [Option<TextureRef>; 5] {
+    /// Every texture that it may refer to.
+    pub(crate) fn textures(&self) -> [Option<TextureRef>; 5] {
         [
             self.metallic_roughness_texture,
             self.specular_transmission_texture,

@@ -9,9 +9,6 @@ use crate::trace::surface::{Placement, position_error};
 use glam::Vec3;
 use std::f32::consts::PI;
 
-/// Radius below which a sphere is a point [m]: its rim is finer than any direction.
-const SMALLEST_RADIUS: f32 = 1e-9;
-
 /// Sources as they come together. Their order is that in which they are added, and must not depend on how the scene is
 /// stored.
 #[derive(Debug, Default)]
@@ -85,7 +82,7 @@ fn rectangle(light: &RectLight) -> Emitter {
 fn bulb(light: &PointLight, cone: Option<Cone>) -> Emitter {
     let PointLight { position: centre, radius, .. } = *light;
     // So small that its radiance is no number: the same light comes from a point.
-    let is_point = radius < SMALLEST_RADIUS || !(light.intensity / (PI * radius * radius)).is_finite();
+    let is_point = !(light.intensity / (PI * radius * radius)).is_finite();
     Emitter {
         shape: if is_point { EmitterShape::Point { centre } } else { EmitterShape::Sphere { centre, radius } },
         normal: Vec3::Y,
