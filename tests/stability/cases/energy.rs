@@ -1,0 +1,5 @@
+//! Light that goes on and on: what is given off must be absorbed, however long the paths.
+
+use crate::case::Case;
+
+pub const CASES: &[Case] = &[];

@@ -1,0 +1,47 @@
+//! The cases, by group.
+
+mod distance;
+mod energy;
+mod images;
+mod lobes;
+mod place;
+mod samples;
+mod triangles;
+
+use crate::case::{Case, Group, Verdict};
+use std::collections::HashSet;
+
+/// Every case with its group.
+pub fn all() -> Vec<(Group, &'static Case)> {
+    Group::ALL.into_iter().flat_map(|group| of(group).iter().map(move |case| (group, case))).collect()
+}
+
+/// The cases of a group.
+pub fn of(group: Group) -> &'static [Case] {
+    match group {
+        Group::Place => place::CASES,
+        Group::Distance => distance::CASES,
+        Group::Triangles => triangles::CASES,
+        Group::Energy => energy::CASES,
+        Group::Lobes => lobes::CASES,
+        Group::Images => images::CASES,
+        Group::Samples => samples::CASES,
+    }
+}
+
+/// Whether the catalogue is one: enough cases, each with a name of its own, and every text said.
+pub fn are_sound() -> Verdict {
+    let cases = all();
+    let names: HashSet<String> = cases.iter().map(|(group, case)| case.full_name(*group)).collect();
+    if names.len() != cases.len() {
+        return Err("two cases share a name".into());
+    }
+    for (group, case) in &cases {
+        for text in [case.name, case.hard, case.elsewhere, case.holds, case.without, case.guard.name, case.guard.does] {
+            if text.is_empty() || text.contains(['|', '\n']) || text.ends_with('.') {
+                return Err(format!("{}: \"{text}\" does not fit a table", case.full_name(*group)));
+            }
+        }
+    }
+    Ok(())
+}

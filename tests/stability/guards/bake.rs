@@ -1,0 +1,1 @@
+//! Guards of sums, reports and what a bake refuses.

@@ -1,0 +1,1 @@
+//! Guards of lobes and shading frames.

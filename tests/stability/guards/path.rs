@@ -1,0 +1,1 @@
+//! Guards of paths: roulette, ends, absorption.

@@ -1,0 +1,1 @@
+//! Guards of scenes: what is refused by name before anything is traced.

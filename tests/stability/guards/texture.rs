@@ -1,0 +1,1 @@
+//! Guards of pictures that are looked up.
