@@ -64,7 +64,7 @@ pub const CASES: &[Case] = &[
         hard: "meter points next to each other, by one unit in the last place",
         elsewhere: EQUAL_SEEDS,
         holds: CORRELATION,
-        guard: &KEY_OF_PLACE,
+        guard: &KEY_OF_OBJECT,
         without: "all points have the same error",
         check: neighbouring_points,
     },

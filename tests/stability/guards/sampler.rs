@@ -64,7 +64,8 @@ pub static KEY_OF_PLACE: Guard = Guard {
 
 pub static KEY_OF_OBJECT: Guard = Guard {
     name: "keys made of the object",
-    does: "texels at the same place of two objects have numbers of their own, by a hash of the object's stable id",
+    does: "texels at the same place of two objects have numbers of their own, by a hash of the object's stable id; so \
+           have two meter points, by a hash of all bits of their positions",
     edits: &[Edit {
         file: "src/bake/gather.rs",
         text: KEY,
