@@ -29,13 +29,13 @@ pub const HELD: [Held; 3] = [
         layout: Layout::Shared { size: 32 },
     },
     Held { name: "garden", hash: 0, scene: garden, density: 5.0, layout: Layout::Packed },
-    Held { name: "vitrine", hash: 0, scene: vitrine, density: 3.0, layout: Layout::Packed },
+    Held { name: "vitrine", hash: 0, scene: vitrine, density: 4.0, layout: Layout::Packed },
 ];
 
 impl Held {
     pub fn bake(&self, threads: usize) -> Lightmap {
         let settings = BakeSettings {
-            samples_per_texel: 32,
+            samples_per_texel: std::env::var("SPP").map_or(32, |s| s.parse().unwrap()),
             density: self.density,
             layout: self.layout,
             threads: NonZeroUsize::new(threads),
