@@ -3,10 +3,14 @@
 //! Sums, products, quotients and square roots are rounded in one way everywhere (IEEE 754). The functions here are
 //! not: those of the standard library are the C library's, which differ from system to system and from version to
 //! version, and the GNU library picks one of several by what the processor can do. Told to do without FMA, its 2.36
-//! gives another last bit for one of 3000 sines in `f64` and for one of 2 000 000 exponentials in `f32`. A bake that
+//! gives another last bit for one of 1400 sines in `f64` and for one of 2 000 000 exponentials in `f32`. A bake that
 //! is to be the same on two machines must not call them. So all that shapes a result calls these, which are the `libm`
-//! crate's translation of musl into Rust: below 1 unit in the last place in what is used here, and compiled with the
-//! rest. Tests, and what only informs, may use the standard library's.
+//! crate's translation of musl into Rust, compiled with the rest: within 1.3 units of the last place in `f32` (the
+//! two-sided arc tangent; the others within 1). A bake takes as long with them: 0.99 of the time, the median of seven
+//! pairs. Tests, and what only informs, may use the standard library's.
+//!
+//! One caller is left that is not ours: the tree of boxes takes log₂ and 2ⁿ for how coarse a box may be. A box holds
+//! its triangles whichever way that is rounded.
 
 use glam::Vec2;
 
@@ -153,7 +157,8 @@ mod tests {
             });
             worst.push((name, errors.fold(0.0, f64::max)));
         }
-        assert!(worst.iter().all(|(_, error)| *error < 1.0), "{worst:?}");
+        let bound = |name| if name == "atan2" { 1.3 } else { 1.0 };
+        assert!(worst.iter().all(|(name, error)| *error < bound(*name)), "{worst:?}");
         // A function that is right to `f32` and no better would not be seen otherwise.
         assert!(worst.iter().all(|(_, error)| *error > 0.4), "{worst:?}");
         assert!(error((1.0 + 2e-7) * 0.3_f32.sin(), 0.3_f64.sin()) > 1.0);
@@ -185,6 +190,6 @@ mod tests {
                 hash = combine(hash, double(x.into(), y.into()).to_bits() ^ u64::from(single(x, y).to_bits()));
             }
         }
-        assert_eq!(hash, 0, "{hash:#018x}");
+        assert_eq!(hash, 0xe194_7c46_117a_5a52, "{hash:#018x}");
     }
 }

@@ -23,19 +23,19 @@ pub struct Held {
 pub const HELD: [Held; 3] = [
     Held {
         name: "cornell",
-        hash: 0,
+        hash: 0x6e19_c1bf_0f8c_1533,
         scene: || glb::load("cornell"),
         density: 1.0,
         layout: Layout::Shared { size: 32 },
     },
-    Held { name: "garden", hash: 0, scene: garden, density: 5.0, layout: Layout::Packed },
-    Held { name: "vitrine", hash: 0, scene: vitrine, density: 4.0, layout: Layout::Packed },
+    Held { name: "garden", hash: 0x5372_f327_8594_d685, scene: garden, density: 5.0, layout: Layout::Packed },
+    Held { name: "vitrine", hash: 0x5cdd_d82d_e80d_1abe, scene: vitrine, density: 4.0, layout: Layout::Packed },
 ];
 
 impl Held {
     pub fn bake(&self, threads: usize) -> Lightmap {
         let settings = BakeSettings {
-            samples_per_texel: std::env::var("SPP").map_or(32, |s| s.parse().unwrap()),
+            samples_per_texel: 128,
             density: self.density,
             layout: self.layout,
             threads: NonZeroUsize::new(threads),
