@@ -33,12 +33,12 @@ pub(super) struct Chart<'a> {
 }
 
 impl Chart<'_> {
-    /// Corners of a triangle of the object on its page [texels].
+    /// Corners of a triangle of the object in its rectangle [texels]. Not on its page, or the last bits of its light
+    /// would go by what lies beside it.
     pub(super) fn triangle(&self, triangle: u32) -> [DVec2; 3] {
-        let origin = DVec2::new(self.origin[0].into(), self.origin[1].into());
         let size = DVec2::new(self.size[0].into(), self.size[1].into());
         self.receiver.vertices[triangle as usize]
-            .map(|vertex| origin + self.uv1[vertex as usize].clamp(Vec2::ZERO, Vec2::ONE).as_dvec2() * size)
+            .map(|vertex| self.uv1[vertex as usize].clamp(Vec2::ZERO, Vec2::ONE).as_dvec2() * size)
     }
 
     /// Number of triangles.

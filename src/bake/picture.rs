@@ -3,6 +3,7 @@
 use super::gather::{Estimate, KeyKind, Paths, key};
 use super::workers::Workers;
 use super::{BakeError, BakeReport, BakeWarning, CancelToken, ProgressSink, Stage};
+use crate::math::Portable;
 use crate::scene::{Camera, Scene};
 use crate::trace::{Compiled, Dimensions, Sampler, Transport};
 use glam::{Vec2, Vec3};
@@ -93,7 +94,7 @@ pub fn render_picture(
 
 /// The unit direction in the world through a place on the picture; its centre is the camera's −Z.
 fn ray_direction(camera: &Camera, place: Vec2, [width, height]: [u32; 2]) -> Vec3 {
-    let half_height = (0.5 * camera.vertical_fov).tan();
+    let half_height = Portable::tan(0.5 * camera.vertical_fov);
     let size = Vec2::new(width as f32, height as f32);
     let centred = (place * 2.0 - size) / size.y * half_height;
     camera.world_from_camera.transform_vector3(Vec3::new(centred.x, -centred.y, -1.0)).normalize()

@@ -85,7 +85,7 @@ pub(super) fn triangle_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     0.5 * (b - a).perp_dot(c - a).abs()
 }
 
-/// Every texel of a `width` × `height` page that a triangle has area in. All in texels.
+/// Every texel of a `width` × `height` rectangle that a triangle has area in. All in texels.
 pub(super) fn covered_texels(triangle: [DVec2; 3], [width, height]: [u32; 2], mut visit: impl FnMut(u32, u32)) {
     let [a, b, c] = triangle;
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));

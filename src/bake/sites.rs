@@ -78,12 +78,13 @@ fn site_key(scene: &Scene, chart: &Chart<'_>, [x, y]: [u32; 2], index: u32, sett
 
 /// What triangles cover of a page, texel by texel.
 fn fragments(atlas: &Atlas<'_>, page: u32) -> Vec<Fragment> {
-    let size = atlas.pages[page as usize];
+    let [width, _] = atlas.pages[page as usize];
     let mut fragments = Vec::new();
     for (receiver, chart) in atlas.charts.iter().enumerate().filter(|(_, chart)| chart.page == page) {
         for triangle in 0..chart.triangle_count() {
-            covered_texels(chart.triangle(triangle), size, |x, y| {
-                fragments.push(Fragment { texel: y * size[0] + x, receiver: receiver as u32, triangle });
+            covered_texels(chart.triangle(triangle), chart.size, |x, y| {
+                let texel = (chart.origin[1] + y) * width + chart.origin[0] + x;
+                fragments.push(Fragment { texel, receiver: receiver as u32, triangle });
             });
         }
     }

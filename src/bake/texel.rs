@@ -63,6 +63,7 @@ impl Texel {
 
     fn add(&mut self, tracer: &Tracer, chart: &Chart<'_>, triangle: u32, [x, y]: [u32; 2]) {
         let corners = chart.triangle(triangle);
+        let [x, y] = [x - chart.origin[0], y - chart.origin[1]];
         let polygon = Polygon::clip(corners, x, y);
         let [a, b, c] = corners;
         let double_area = (b - a).perp_dot(c - a);

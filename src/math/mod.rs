@@ -11,6 +11,7 @@ mod form_factor;
 mod frame;
 mod hash;
 mod polygon;
+mod portable;
 mod special;
 mod spherical_rectangle;
 mod spherical_triangle;
@@ -33,6 +34,7 @@ pub use form_factor::{
 pub use frame::Frame;
 pub use hash::{combine, mix64, seed32};
 pub use polygon::polygon_irradiance;
+pub use portable::{Portable, unit_at};
 pub use special::{chi_squared_survival, normal_survival, student_t_survival};
 pub use spherical_rectangle::SphericalRectangle;
 pub use spherical_triangle::SphericalTriangle;

@@ -11,6 +11,7 @@
 //! elevations down to 10⁻⁹: the solid angle is right to 3·10⁻⁷ of itself and the share of it on either side of a
 //! sample to 3·10⁻⁷, the worst at 10⁻⁹ from the surface; else to 10⁻⁹.
 
+use super::Portable;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use std::f64::consts::TAU;
 
@@ -150,7 +151,7 @@ impl Extent {
         let ac = a.dot(c);
         let d1 = ra * rb * rc + a.dot(b) * rc + ac * rb + b.dot(c) * ra;
         let d2 = ra * rc * rd + ac * rd + a.dot(d) * rc + c.dot(d) * ra;
-        2.0 * (n * (d1 + d2)).atan2(d1 * d2 - n * n)
+        2.0 * Portable::atan2(n * (d1 + d2), d1 * d2 - n * n)
     }
 
     fn mirrored(&self) -> Self {
@@ -218,7 +219,7 @@ impl Strips {
     /// The x up to which the strips subtend twice `half` of solid angle.
     #[inline]
     fn x(&self, half: f64, distance: f64) -> f64 {
-        let (sin, cos) = half.sin_cos();
+        let (sin, cos) = Portable::sin_cos(half);
         let (sin_2, sin_sin_2) = (2.0 * sin * cos, 2.0 * sin * sin);
         let step = -self.kappa * sin_sin_2 - self.x_sigma / distance * sin_2;
         let x = self.x_sigma * (1.0 - sin_sin_2) + distance * self.kappa * sin_2;

@@ -12,6 +12,7 @@
 //! sample to 10⁻⁷; but where the receiver all but touches the triangle and that fills the hemisphere, the share of a
 //! sample along its arc is lost, and [`SphericalTriangle::new`] refuses.
 
+use super::Portable;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use std::f64::consts::TAU;
 
@@ -130,7 +131,7 @@ impl SphericalTriangle {
 
     #[inline]
     fn direction(&self, u: DVec2) -> DVec3 {
-        let (sin, cos) = (0.5 * u.x * self.solid_angle).sin_cos();
+        let (sin, cos) = Portable::sin_cos(0.5 * u.x * self.solid_angle);
         // tan(b/2) = sin / below for the side b from the first corner to where the arc ends.
         let below = self.tan_half_c.y * cos - self.tan_half_c.x * sin;
         let square = below * below + sin * sin;
@@ -169,5 +170,5 @@ fn solid_angle(a: DVec3, edge_b: DVec3, edge_c: DVec3) -> f64 {
     let (b, c) = (a + edge_b, a + edge_c);
     let (la, lb, lc) = (a.length(), b.length(), c.length());
     let volume = a.dot(edge_b.cross(edge_c)).abs();
-    2.0 * volume.atan2(la * lb * lc + a.dot(b) * lc + a.dot(c) * lb + b.dot(c) * la)
+    2.0 * Portable::atan2(volume, la * lb * lc + a.dot(b) * lc + a.dot(c) * lb + b.dot(c) * la)
 }

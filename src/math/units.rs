@@ -1,5 +1,6 @@
 //! Photometric conversions as Bevy displays light. Names the formulas once; knows neither lights nor materials.
 
+use super::Portable;
 use std::f64::consts::PI;
 
 /// The constant of the saturation-based exposure that Bevy uses: luminance that reaches white = 1.2 · 2^EV100 cd/m²
@@ -16,14 +17,14 @@ pub fn rect_light_radiance(power: f64, width: f64, height: f64) -> f64 {
 /// What a camera at `ev100` [EV at ISO 100] multiplies luminance by [m²/cd]: 1/(1.2 · 2^EV100).
 #[inline]
 pub fn exposure_from_ev100(ev100: f64) -> f64 {
-    (-ev100).exp2() / WHITE_AT_EV100_0
+    Portable::exp2(-ev100) / WHITE_AT_EV100_0
 }
 
 /// The EV at ISO 100 of a camera that multiplies luminance by `exposure` [m²/cd]: the inverse of
 /// [`exposure_from_ev100`].
 #[inline]
 pub fn ev100_from_exposure(exposure: f64) -> f64 {
-    -(exposure * WHITE_AT_EV100_0).log2()
+    -Portable::log2(exposure * WHITE_AT_EV100_0)
 }
 
 /// The radiance [cd/m²] at which a surface of `emissive` looks on the screen of a camera at `ev100`: Bevy adds

@@ -1,10 +1,11 @@
-//! Maps from the unit square to a disk, to hemispheres and cones around +Z, to the sphere and to a triangle, each with its density and its
-//! inverse. All keep neighbours together, so that a stratified or low-discrepancy set stays one. Does not turn the
+//! Maps from the unit square to a disk, to hemispheres and cones around +Z, to the sphere and to a triangle, each with
+//! its density and its inverse. All keep neighbours together, so that a stratified or low-discrepancy set stays one. Does not turn the
 //! result into world space: [`Frame`](super::Frame) does.
 //!
 //! Disk and hemispheres: Shirley and Chiu 1997, "A Low Distortion Map Between Disk and Square". Triangle: Heitz
 //! 2019, "A Low-Distortion Map Between Triangle and Square".
 
+use super::{Portable, unit_at};
 use glam::{Vec2, Vec3, Vec3Swizzles};
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4};
 
@@ -37,7 +38,7 @@ fn polar(u: Vec2) -> Polar {
 #[inline]
 pub fn square_to_disk(u: Vec2) -> Vec2 {
     let p = polar(u);
-    p.radius * Vec2::from_angle(p.angle)
+    p.radius * unit_at(p.angle)
 }
 
 /// The density of [`square_to_disk`] at `p`, per area: 1/π in the disk, 0 outside.
@@ -53,10 +54,10 @@ pub fn disk_to_square(p: Vec2) -> Vec2 {
     // In the first and third wedge |x| is the radius, in the others |y|.
     let o = if p.x.abs() > p.y.abs() {
         let r = r.copysign(p.x);
-        Vec2::new(r, r * (p.y / p.x).atan() / FRAC_PI_4)
+        Vec2::new(r, r * Portable::atan(p.y / p.x) / FRAC_PI_4)
     } else if p.y != 0.0 {
         let r = r.copysign(p.y);
-        Vec2::new(r * (p.x / p.y).atan() / FRAC_PI_4, r)
+        Vec2::new(r * Portable::atan(p.x / p.y) / FRAC_PI_4, r)
     } else {
         Vec2::ZERO
     };
@@ -69,7 +70,7 @@ pub fn square_to_uniform_hemisphere(u: Vec2) -> Vec3 {
     let p = polar(u);
     let rim = p.rim.max(RIM);
     let z = rim * (2.0 - rim);
-    (p.radius * (1.0 + z).sqrt() * Vec2::from_angle(p.angle)).extend(z)
+    (p.radius * (1.0 + z).sqrt() * unit_at(p.angle)).extend(z)
 }
 
 /// The density of [`square_to_uniform_hemisphere`] in direction `w`: 1/(2π) above the horizon, 0 below.
@@ -90,7 +91,7 @@ pub fn uniform_hemisphere_to_square(w: Vec3) -> Vec2 {
 pub fn square_to_cosine_hemisphere(u: Vec2) -> Vec3 {
     let p = polar(u);
     let rim = p.rim.max(RIM);
-    (p.radius * Vec2::from_angle(p.angle)).extend((rim * (2.0 - rim)).sqrt())
+    (p.radius * unit_at(p.angle)).extend((rim * (2.0 - rim)).sqrt())
 }
 
 /// The density of [`square_to_cosine_hemisphere`] in direction `w`: cos θ/π above the horizon, 0 below.
@@ -113,7 +114,7 @@ pub fn square_to_uniform_cone(u: Vec2, height: f32) -> Vec3 {
     // 1 − cos θ grows with the area on the disk, as the solid angle does.
     let drop = height * p.radius * p.radius;
     let sine_over_radius = (height * (2.0 - drop)).max(0.0).sqrt();
-    (p.radius * sine_over_radius * Vec2::from_angle(p.angle)).extend(1.0 - drop)
+    (p.radius * sine_over_radius * unit_at(p.angle)).extend(1.0 - drop)
 }
 
 /// The density of [`square_to_uniform_cone`] within the cone: 1/(2π `height`) [1/sr].

@@ -4,6 +4,7 @@
 use super::texels::clamp;
 use super::tone::{Look, ToneCurve};
 use crate::bake::{Page, Picture};
+use crate::math::Portable;
 use glam::Vec3;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
@@ -28,7 +29,7 @@ pub(super) fn write_preview(page: &Page, to: impl Write) -> io::Result<()> {
 /// A picture as a camera shows it.
 pub(super) fn write_picture(picture: &Picture, look: Look, to: impl Write) -> io::Result<()> {
     // Twice the precision: an exposure value far from a camera's own must not overflow.
-    let exposure = 1.0 / (1.2 * 2.0_f64.powf(f64::from(look.ev100)));
+    let exposure = 1.0 / (1.2 * Portable::exp2(f64::from(look.ev100)));
     let pixels = picture.radiance.iter().flat_map(|&radiance| pixel(radiance, exposure, look.tone));
     write_rgb(picture.width, picture.height, pixels.collect(), to)
 }
@@ -57,7 +58,8 @@ fn pixel(radiance: Vec3, exposure: f64, tone: ToneCurve) -> [u8; 3] {
 /// The eight-bit code of a linear value, clipped to [0, 1] (IEC 61966-2-1:1999).
 fn to_srgb(linear: f32) -> u8 {
     let linear = clamp(linear, 1.0);
-    let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    let encoded =
+        if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * Portable::powf(linear, 1.0 / 2.4) - 0.055 };
     (encoded * 255.0 + 0.5) as u8
 }
 

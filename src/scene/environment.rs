@@ -1,5 +1,6 @@
 //! What shines from infinitely far away in all directions: a picture of the whole sphere.
 
+use crate::math::Portable;
 use glam::{Quat, Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 use std::sync::Arc;
@@ -25,17 +26,17 @@ impl EnvironmentMap {
     /// Place on the picture, in the unit square, of a unit direction in the picture's frame.
     #[inline]
     pub fn place_of(direction: Vec3) -> Vec2 {
-        let u = 0.5 + direction.z.atan2(direction.x) / TAU;
+        let u = 0.5 + Portable::atan2(direction.z, direction.x) / TAU;
         // By the sine near the poles, where the cosine says little.
-        let v = direction.x.hypot(direction.z).atan2(direction.y) / PI;
+        let v = Portable::atan2(Portable::hypot(direction.x, direction.z), direction.y) / PI;
         Vec2::new(u, v)
     }
 
     /// Unit direction, in the picture's frame, of a place on the picture.
     #[inline]
     pub fn direction_of(place: Vec2) -> Vec3 {
-        let (sin_phi, cos_phi) = ((place.x - 0.5) * TAU).sin_cos();
-        let (sin_theta, cos_theta) = (place.y * PI).sin_cos();
+        let (sin_phi, cos_phi) = Portable::sin_cos((place.x - 0.5) * TAU);
+        let (sin_theta, cos_theta) = Portable::sin_cos(place.y * PI);
         Vec3::new(sin_theta * cos_phi, cos_theta, sin_theta * sin_phi)
     }
 }

@@ -5,6 +5,7 @@ use super::attributes::Needs;
 use super::bsdf::is_perfectly_smooth;
 use super::effects::{Effect, EffectSet};
 use super::surface::TriangleShape;
+use crate::math::Portable;
 use crate::scene::{Alpha, Interior, Material, Mesh, NormalMap, Scattering, Standard, TextureRef};
 use glam::{Affine2, Vec3, Vec4};
 
@@ -159,7 +160,7 @@ fn body(scattering: &Scattering) -> Option<Vec3> {
 /// Beer and Lambert's coefficient of what leaves `colour` of white light after `distance` [1/m].
 fn absorption(colour: Vec3, distance: f32) -> Vec3 {
     // The smallest number that has a logarithm stands for black, so that nothing is 0 · ∞.
-    let depth = -Vec3::from_array(colour.to_array().map(|channel| channel.max(f32::MIN_POSITIVE).ln()));
+    let depth = -Vec3::from_array(colour.to_array().map(|channel| Portable::ln(channel.max(f32::MIN_POSITIVE))));
     (depth / distance).max(Vec3::ZERO)
 }
 

@@ -1,8 +1,9 @@
 //! Tangents for meshes that have a normal map and none of their own: Mikkelsen's tangent space (MikkTSpace), as Bevy
 //! and the programs that bake normal maps make it, by the crate `bevy_mikktspace`, which is free of the engine.
 
+use crate::math::Portable;
 use crate::scene::Mesh;
-use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
+use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
 use glam::{Vec2, Vec3, Vec4};
 
 /// Tangents of a mesh by these texture coordinates, one per vertex, in the convention of
@@ -34,7 +35,21 @@ impl Corners<'_> {
     }
 }
 
-impl Geometry for Corners<'_> {
+/// The algorithm's own arithmetic, in the same bits on every machine.
+struct PortableOps;
+
+impl Ops for PortableOps {
+    fn sqrt(x: f32) -> f32 {
+        x.sqrt()
+    }
+
+    fn acos(x: f32) -> f32 {
+        // Rounded once from twice the digits, as the original does.
+        Portable::acos(f64::from(x)) as f32
+    }
+}
+
+impl Geometry<PortableOps> for Corners<'_> {
     fn num_faces(&self) -> usize {
         self.triangles.len()
     }

@@ -1,6 +1,7 @@
 //! Textures as the tracer looks them up: decoded to linear numbers, wrapped and filtered. Base level only: a bake's
 //! own many samples are the filter.
 
+use crate::math::Portable;
 use crate::scene::{Filter, Texels, Texture, Wrap};
 use glam::{Vec2, Vec4};
 use std::sync::Arc;
@@ -95,7 +96,7 @@ fn table(curve: impl Fn(f32) -> f32) -> Box<[f32; 256]> {
 
 /// IEC 61966-2-1.
 fn linear_from_srgb(encoded: f32) -> f32 {
-    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+    if encoded <= 0.04045 { encoded / 12.92 } else { Portable::powf((encoded + 0.055) / 1.055, 2.4) }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! How a Bevy scene is read: the questions to which its data alone has no answer.
 
+use crate::math::Portable;
 use bevy::prelude::*;
 
 /// Exposure value at ISO 100 of a Bevy camera that nobody has touched.
@@ -31,7 +32,7 @@ impl EmissiveUnit {
         match self {
             Self::Nits => 1.0,
             Self::AsDisplayed { ev100 } => {
-                let inverse_exposure = 1.2 * ev100.exp2();
+                let inverse_exposure = 1.2 * Portable::exp2(ev100);
                 inverse_exposure + (1.0 - inverse_exposure) * exposure_weight
             }
         }

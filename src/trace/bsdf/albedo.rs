@@ -10,6 +10,7 @@
 use super::fresnel::{SCHLICK_AVERAGE, Schlick, schlick_weight};
 use super::ggx::{Ggx, SMOOTH_BELOW, mirrored};
 use super::glass_albedo::GlassTables;
+use crate::math::{Portable, unit_at};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 use std::sync::OnceLock;
@@ -233,7 +234,7 @@ pub(super) struct Quadrature {
 impl Quadrature {
     pub(super) fn new([around, up]: [usize; 2]) -> Self {
         // Half a turn is enough: the other is its mirror image.
-        let angles = (0..around).map(|i| Vec2::from_angle(PI * (i as f32 + 0.5) / around as f32)).collect();
+        let angles = (0..around).map(|i| unit_at(PI * (i as f32 + 0.5) / around as f32)).collect();
         let heights = gauss_legendre(up).into_iter().map(|[q, weight]| [q * q * q, 3.0 * q * q * weight]).collect();
         Self { angles, heights }
     }
@@ -270,7 +271,7 @@ fn gauss_legendre(n: usize) -> Vec<[f64; 2]> {
         (p, n as f64 * (x * p - before) / (x * x - 1.0))
     };
     let node = |i: usize| {
-        let mut x = -(std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
+        let mut x = -Portable::cos(std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5));
         for _ in 0..6 {
             let (p, slope) = legendre(x);
             x -= p / slope;

@@ -4,6 +4,7 @@
 //! Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps". The usual quotients of cosines are
 //! multiplied out, so that nothing is divided by a cosine that may vanish.
 
+use crate::math::unit_at;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, TAU};
 
@@ -42,7 +43,7 @@ impl Ggx {
     /// A normal that is seen from `wo`, with density [`visible`](Self::visible).
     #[inline]
     pub(super) fn sample(&self, wo: Vec3, [u, v]: [f32; 2]) -> Vec3 {
-        self.cap_point(wo, Vec2::from_angle(TAU * u), 1.0 - v)
+        self.cap_point(wo, unit_at(TAU * u), 1.0 - v)
     }
 
     /// The visible normal at a point of the unit circle and a height in (0, 1] of the spherical cap.

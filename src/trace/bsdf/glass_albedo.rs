@@ -12,6 +12,7 @@
 use super::albedo::{cell, height_of, roughness_at};
 use super::fresnel::refract_at;
 use super::ggx::Ggx;
+use crate::math::unit_at;
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
@@ -270,7 +271,7 @@ impl Lattice {
         let point = |i: usize| {
             let q = (i as f32 + 0.5) / count as f32;
             // Half a turn is enough: the other is its mirror image.
-            let around = Vec2::from_angle(PI * ((i * turn % count) as f32 + 0.5) / count as f32);
+            let around = unit_at(PI * ((i * turn % count) as f32 + 0.5) / count as f32);
             (around, q * q, 2.0 * q / count as f32)
         };
         Self { points: (0..count).map(point).collect() }

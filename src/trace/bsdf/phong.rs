@@ -6,7 +6,7 @@
 
 use super::ggx::mirror;
 use super::{BsdfSample, Density, Lambert, spread};
-use crate::math::Frame;
+use crate::math::{Frame, Portable};
 use glam::{Vec2, Vec3};
 use std::f32::consts::TAU;
 
@@ -30,9 +30,9 @@ impl Phong {
         }
         let wi = if u_choice < self.glossy_chance() {
             // The cosine is v^(1 / (n + 1)); its sine does not come from the difference to 1.
-            let log = v.ln() / (self.exponent + 1.0);
-            let (cos, sin) = (log.exp(), (-(2.0 * log).exp_m1()).sqrt());
-            let (y, x) = (TAU * u).sin_cos();
+            let log = Portable::ln(v) / (self.exponent + 1.0);
+            let (cos, sin) = (Portable::exp(log), (-Portable::exp_m1(2.0 * log)).sqrt());
+            let (y, x) = Portable::sin_cos(TAU * u);
             Frame::new(mirror(wo)).world_from_local(Vec3::new(sin * x, sin * y, cos)).normalize()
         } else {
             self.lambert().sample(Vec2::new(u, v)).wi
@@ -74,7 +74,7 @@ impl Phong {
     #[inline]
     fn lobe(&self, wo: Vec3, wi: Vec3) -> f32 {
         let lack = 0.5 * (mirror(wo) - wi).length_squared();
-        if lack < 1.0 { (self.exponent * (-lack).ln_1p()).exp() } else { 0.0 }
+        if lack < 1.0 { Portable::exp(self.exponent * Portable::ln_1p(-lack)) } else { 0.0 }
     }
 
     #[inline]

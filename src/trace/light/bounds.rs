@@ -7,6 +7,7 @@
 
 use super::LightContext;
 use super::emitter::{Emitter, EmitterShape};
+use crate::math::Portable;
 use glam::{DVec3, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -28,7 +29,7 @@ impl Directions {
     /// The narrowest cone around both, or near it.
     fn union(self, other: Self) -> Self {
         let (wide, narrow) = if self.angle >= other.angle { (self, other) } else { (other, self) };
-        let between = wide.axis.cross(narrow.axis).length().atan2(wide.axis.dot(narrow.axis));
+        let between = Portable::atan2(wide.axis.cross(narrow.axis).length(), wide.axis.dot(narrow.axis));
         if between + narrow.angle <= wide.angle {
             return wide;
         }
@@ -37,7 +38,10 @@ impl Directions {
         // Towards the other axis; opposite ones have none, and then every direction counts.
         let aside = (narrow.axis - wide.axis * wide.axis.dot(narrow.axis)).try_normalize();
         match aside {
-            Some(aside) if angle < PI => Self { axis: wide.axis * turn.cos() + aside * turn.sin(), angle },
+            Some(aside) if angle < PI => {
+                let (sine, cosine) = Portable::sin_cos(turn);
+                Self { axis: wide.axis * cosine + aside * sine, angle }
+            }
             _ => Self::ALL,
         }
     }
@@ -114,9 +118,10 @@ impl Group {
     /// What it costs to have these together: intensity × solid angle of the directions × size² of the box. The size
     /// is that of the diagonal, not of the surface, which would call a row of points as good as one point.
     pub(super) fn cost(&self) -> f64 {
-        let (theta, sine, cosine) = (self.normals.angle, self.normals.angle.sin(), self.normals.angle.cos());
+        let theta = self.normals.angle;
+        let (sine, cosine) = Portable::sin_cos(theta);
         let wide = (theta + self.spread).min(PI);
-        let fringe = 2.0 * wide * sine - (theta - 2.0 * wide).cos() - 2.0 * theta * sine + cosine;
+        let fringe = 2.0 * wide * sine - Portable::cos(theta - 2.0 * wide) - 2.0 * theta * sine + cosine;
         let directions = 2.0 * PI * (1.0 - cosine) + FRAC_PI_2 * fringe;
         self.intensity * directions * (self.high - self.low).length_squared()
     }
@@ -154,9 +159,9 @@ impl From<&Group> for Bounds {
             half: (half + group.centre().abs() * f64::from(f32::EPSILON)).as_vec3(),
             radius_squared: (half.length() + group.centre().length() * f64::from(f32::EPSILON)).powi(2) as f32,
             axis: group.normals.axis.as_vec3(),
-            sin_normals: group.normals.angle.sin() as f32,
-            cos_normals: group.normals.angle.cos() as f32,
-            cos_spread: group.spread.cos() as f32,
+            sin_normals: Portable::sin(group.normals.angle) as f32,
+            cos_normals: Portable::cos(group.normals.angle) as f32,
+            cos_spread: Portable::cos(group.spread) as f32,
             double_sided: group.double_sided,
             inverse_reach_squared: group.reach.powi(2).recip() as f32,
             softness: group.softness.max(f64::from(f32::MIN_POSITIVE)),

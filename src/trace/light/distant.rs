@@ -1,7 +1,7 @@
 //! Light from infinitely far away in one direction: a disc in the sky, or a single direction.
 
 use super::{LightContext, brightness};
-use crate::math::{Frame, square_to_uniform_cone};
+use crate::math::{Frame, Portable, square_to_uniform_cone};
 use crate::scene::DirectionalLight;
 use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -35,7 +35,7 @@ impl DistantDisc {
     pub(super) fn new(light: &DirectionalLight) -> Self {
         let half = 0.5 * f64::from(light.angular_diameter);
         let is_delta = half < SMALLEST_HALF_ANGLE;
-        let (half_sin, half_cos) = if is_delta { (0.0, 1.0) } else { half.sin_cos() };
+        let (half_sin, half_cos) = if is_delta { (0.0, 1.0) } else { Portable::sin_cos(half) };
         let axis = -light.direction.as_dvec3().normalize_or(DVec3::NEG_Y);
         Self { axis, illuminance: light.illuminance, half_sin, half_cos: half_cos.max(0.0), is_delta }
     }

@@ -3,7 +3,7 @@
 use super::seen::Seen;
 use super::sphere::SeenSphere;
 use super::{End, brightness};
-use crate::math::{Frame, square_to_uniform_cone, square_to_uniform_sphere};
+use crate::math::{Frame, Portable, square_to_uniform_cone, square_to_uniform_sphere};
 use crate::trace::surface::{TriangleShape, position_error};
 use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::PI;
@@ -51,9 +51,9 @@ pub(in crate::trace) struct Cone {
 impl Cone {
     /// What is left of the light, for the cosine between the axis and the way to the receiver.
     fn dimming(&self, cosine: f32) -> f32 {
-        let outer = self.outer_angle.cos();
+        let outer = Portable::cos(self.outer_angle);
         // Bevy's own least width (bevy_pbr, render/light.rs).
-        let scale = 1.0 / (self.inner_angle.cos() - outer).max(1e-4);
+        let scale = 1.0 / (Portable::cos(self.inner_angle) - outer).max(1e-4);
         let share = ((cosine - outer) * scale).clamp(0.0, 1.0);
         share * share
     }
@@ -143,7 +143,7 @@ impl Emitter {
             (EmitterShape::Sphere { .. } | EmitterShape::Point { .. }, None) => 4.0 * PI,
             (EmitterShape::Point { .. }, Some(cone)) => {
                 // ∫ of the dimming, a parabola in the cosine between the two angles.
-                let [inner, outer] = [cone.inner_angle, cone.outer_angle].map(|angle| f64::from(angle).cos());
+                let [inner, outer] = [cone.inner_angle, cone.outer_angle].map(|angle| Portable::cos(f64::from(angle)));
                 2.0 * PI * (1.0 - inner + (inner - outer) / 3.0)
             }
             (EmitterShape::Sphere { .. }, Some(_)) => return None,
@@ -326,7 +326,7 @@ impl Emitter {
             }
             (EmitterShape::Point { centre }, None) => (centre, square_to_uniform_sphere(Vec2::new(u, v))),
             (EmitterShape::Sphere { centre, .. } | EmitterShape::Point { centre }, Some(cone)) => {
-                let half = (0.5 * cone.outer_angle).sin();
+                let half = Portable::sin(0.5 * cone.outer_angle);
                 let local = square_to_uniform_cone(Vec2::new(u, v), 2.0 * half * half);
                 (centre, Frame::new(cone.direction).world_from_local(local))
             }

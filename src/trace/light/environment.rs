@@ -11,7 +11,7 @@
 //! Costs half a byte per pixel beside the picture itself, which is shared with the scene.
 
 use super::brightness;
-use crate::math::Discrete2d;
+use crate::math::{Discrete2d, Portable};
 use crate::scene::EnvironmentMap;
 use glam::{DQuat, DVec3, UVec2, Vec2, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -87,8 +87,8 @@ impl Environment {
     /// The pixel in a unit direction: [`EnvironmentMap::place_of`] in f64. `None` for NaN.
     fn pixel(&self, wi: Vec3) -> Option<UVec2> {
         let local = self.world_from_map.inverse() * wi.as_dvec3();
-        let u = 0.5 + local.z.atan2(local.x) / TAU;
-        let v = local.x.hypot(local.z).atan2(local.y) / PI;
+        let u = 0.5 + Portable::atan2(local.z, local.x) / TAU;
+        let v = Portable::atan2(Portable::hypot(local.x, local.z), local.y) / PI;
         let index = |share: f64, count: u32| ((share * f64::from(count)) as u32).min(count - 1);
         (u.is_finite() && v.is_finite()).then(|| UVec2::new(index(u, self.map.width), index(v, self.map.height)))
     }
@@ -99,13 +99,14 @@ impl Environment {
         let [top, bottom] = heights(place.y, self.map.height);
         let cos = top + (bottom - top) * f64::from(within.y);
         let sin = ((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt();
-        (self.world_from_map * DVec3::new(sin * phi.cos(), cos, sin * phi.sin())).as_vec3()
+        let (sin_phi, cos_phi) = Portable::sin_cos(phi);
+        (self.world_from_map * DVec3::new(sin * cos_phi, cos, sin * sin_phi)).as_vec3()
     }
 }
 
 /// cos θ at the upper and the lower rim of a row.
 fn heights(row: u32, rows: u32) -> [f64; 2] {
-    [row, row + 1].map(|edge| (PI * f64::from(edge) / f64::from(rows)).cos())
+    [row, row + 1].map(|edge| Portable::cos(PI * f64::from(edge) / f64::from(rows)))
 }
 
 fn texel(map: &EnvironmentMap, place: UVec2) -> Vec3 {

@@ -2,7 +2,7 @@
 
 use super::PathStart;
 use super::vertex::{Ray, Vertex};
-use crate::math::Frame;
+use crate::math::{Frame, Portable};
 use crate::trace::accel::Hit;
 use crate::trace::bsdf::{Bsdf, Density, Lambert};
 use crate::trace::kernel::{DISTANT, LAYERED, PASSING, TEXTURED};
@@ -378,7 +378,7 @@ fn dimming(absorption: Vec3, distance: f32) -> Vec3 {
         return Vec3::ONE;
     }
     // Zero times an infinite way is no dimming.
-    let channel = |absorption: f32| if absorption == 0.0 { 1.0 } else { (-absorption * distance).exp() };
+    let channel = |absorption: f32| if absorption == 0.0 { 1.0 } else { Portable::exp(-absorption * distance) };
     Vec3::from_array(absorption.to_array().map(channel))
 }
 

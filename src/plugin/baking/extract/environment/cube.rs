@@ -2,7 +2,7 @@
 //! texels that are constant each. Faces as Vulkan and the other interfaces have them, and left-handed as Bevy's are:
 //! the shader negates z before it looks (bevy_pbr 0.19, environment_map.wgsl).
 
-use crate::math::luminance;
+use crate::math::{Portable, luminance};
 use bevy::math::Vec3;
 use rayon::prelude::*;
 use std::f32::consts::TAU;
@@ -113,12 +113,12 @@ impl Grid {
     }
 
     fn meridian(&self, column: u32, share: f32) -> [f32; 2] {
-        <[f32; 2]>::from((((column as f32 + share) / self.width as f32 - 0.5) * TAU).sin_cos())
+        <[f32; 2]>::from(Portable::sin_cos(((column as f32 + share) / self.width as f32 - 0.5) * TAU))
     }
 
     /// Equal areas between two parallels are equal steps of the cosine.
     fn parallel(&self, row: u32, share: f32) -> [f32; 2] {
-        let [top, bottom] = [row, row + 1].map(|row| (row as f32 * TAU / self.width as f32).cos());
+        let [top, bottom] = [row, row + 1].map(|row| Portable::cos(row as f32 * TAU / self.width as f32));
         let cosine = top + (bottom - top) * share;
         [(1.0 - cosine * cosine).max(0.0).sqrt(), cosine]
     }

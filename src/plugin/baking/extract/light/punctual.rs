@@ -1,6 +1,7 @@
 //! `PointLight` and `SpotLight`: both Φ/4π cd, whatever the cone.
 
 use super::{Reader, is_from_gltf};
+use crate::math::Portable;
 use crate::scene;
 use bevy::light::{PointLight, SpotLight};
 use bevy::prelude::*;
@@ -50,7 +51,7 @@ impl Reader<'_> {
 /// Inner and outer angle as Bevy has them: below a right angle, and a little apart in their cosines.
 fn cone(inner: f32, outer: f32) -> [f32; 2] {
     let outer = if outer >= FRAC_PI_2 { WIDEST } else { outer };
-    let apart = (outer.cos() + STEEPEST).min(1.0).acos();
+    let apart = Portable::acos((Portable::cos(outer) + STEEPEST).min(1.0));
     [inner.min(apart), outer]
 }
 

@@ -137,7 +137,7 @@ fn word(texel: &[u8]) -> u32 {
 
 fn rgb9e5(word: u32) -> [f32; 4] {
     // Bias 15 and nine bits of mantissa.
-    let scale = ((word >> 27) as f32 - 24.0).exp2();
+    let scale = 2.0_f32.powi((word >> 27) as i32 - 24);
     let channel = |shift: u32| (word >> shift & 0x1ff) as f32 * scale;
     [channel(0), channel(9), channel(18), 1.0]
 }

@@ -1,0 +1,162 @@
+//! Any number of threads, any order of the work, any order of the scene's parts.
+
+use crate::common::garden::garden;
+use crate::common::glb;
+use crate::common::meter::{at, on_walls};
+use crate::fingerprint::{Fingerprint, assert_same};
+use crate::vitrine::vitrine;
+use crate::{bake, common};
+use bevy_kiln::bake::{
+    BakeSettings, CancelToken, Layout, Lightmap, MeterPoint, MeterReading, MeterSettings, Progress, bake_lightmap,
+    measure_irradiance,
+};
+use bevy_kiln::scene::Scene;
+use bevy_kiln::trace::Transport;
+use common::scenes::furnace;
+use common::statistics::Random;
+use glam::Vec3;
+use std::num::NonZeroUsize;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+#[test]
+fn one_thread_and_two_and_eight() {
+    for layout in [Layout::Packed, Layout::Shared { size: 64 }] {
+        let scene = glb::load("cornell");
+        let one = bake(&scene, 1, layout);
+        assert!(one.report.texels > 500);
+        assert_same(&one, &bake(&scene, 2, layout));
+        assert_same(&one, &bake(&scene, 8, layout));
+    }
+}
+
+/// A closed room, whose energy balance is summed over what all threads bring.
+#[test]
+fn the_energy_balance_of_one_thread_and_two_and_eight() {
+    let one = bake(&furnace(0.5), 1, Layout::Packed);
+    assert!(one.report.energy_balance.is_some());
+    assert_same(&one, &bake(&furnace(0.5), 2, Layout::Packed));
+    assert_same(&one, &bake(&furnace(0.5), 8, Layout::Packed));
+}
+
+/// Meshes, materials, instances and lights in an order that chance picks.
+fn shuffled(scene: &Scene, seed: u64) -> Scene {
+    let mut random = Random::new(seed);
+    let mut order = |count: usize| {
+        let mut order: Vec<usize> = (0..count).collect();
+        (1..count).for_each(|last| order.swap(last, random.bits() as usize % (last + 1)));
+        order
+    };
+    let mut shuffled = scene.clone();
+    let [meshes, materials, instances, lights] =
+        [scene.meshes.len(), scene.materials.len(), scene.instances.len(), scene.lights.len()].map(&mut order);
+    shuffled.meshes = meshes.iter().map(|&index| scene.meshes[index].clone()).collect();
+    shuffled.materials = materials.iter().map(|&index| scene.materials[index].clone()).collect();
+    shuffled.instances = instances.iter().map(|&index| scene.instances[index].clone()).collect();
+    shuffled.lights = lights.iter().map(|&index| scene.lights[index].clone()).collect();
+    let place = |order: &[usize], of: usize| order.iter().position(|&index| index == of).unwrap();
+    for instance in &mut shuffled.instances {
+        instance.mesh = place(&meshes, instance.mesh);
+        instance.material = place(&materials, instance.material);
+    }
+    shuffled
+}
+
+#[test]
+fn shuffled_meshes_materials_instances_and_lights() {
+    for (scene, layouts) in [
+        (glb::load("cornell"), [Layout::Packed, Layout::Shared { size: 64 }].as_slice()),
+        (garden(), &[Layout::Packed]),
+        (vitrine(), &[Layout::Packed]),
+        (furnace(0.3), &[Layout::Packed]),
+    ] {
+        for &layout in layouts {
+            let one = bake(&scene, 1, layout);
+            for seed in 0..2 {
+                assert_same(&one, &bake(&shuffled(&scene, seed), 2, layout));
+            }
+        }
+    }
+}
+
+/// Threads that are held up after each piece of work, for a time that chance picks: the pieces then come to an end in
+/// another order each time, whichever thread takes them.
+#[test]
+fn threads_that_are_held_up() {
+    let scene = vitrine();
+    let settings = |threads| BakeSettings {
+        samples_per_texel: 16,
+        density: 3.0,
+        threads: NonZeroUsize::new(threads),
+        ..BakeSettings::default()
+    };
+    let free = bake_lightmap(&scene, &settings(1), &(), &CancelToken::default()).unwrap();
+    for seed in 0..4 {
+        let turn = AtomicU64::new(100 * seed);
+        let hold_up = |_: Progress| {
+            let pause = Random::new(turn.fetch_add(1, Ordering::Relaxed)).bits() % 400;
+            std::thread::sleep(Duration::from_micros(pause));
+        };
+        let held = bake_lightmap(&scene, &settings(8), &hold_up, &CancelToken::default()).unwrap();
+        assert_same(&free, &held);
+    }
+}
+
+/// The texels of one object, without what its neighbours on the page add beside it.
+fn own_texels(lightmap: &Lightmap, id: &str) -> Vec<[u32; 7]> {
+    let place = lightmap.placements.iter().find(|place| place.id.as_str() == id).unwrap();
+    let page = &lightmap.pages[place.page as usize];
+    let texel = |uv: [f32; 2]| [(uv[0] * page.width as f32) as u32, (uv[1] * page.height as f32) as u32];
+    let ([left, top], [right, bottom]) = (texel(place.uv_min), texel(place.uv_max));
+    let rows = (top..bottom).flat_map(|y| (left..right).map(move |x| (y * page.width + x) as usize));
+    let bits = |index: usize| {
+        let ([r, g, b], [er, eg, eb]) = (page.raw[index].to_array(), page.stderr[index].to_array());
+        [r, g, b, er, eg, eb, page.coverage[index]].map(f32::to_bits)
+    };
+    rows.map(bits).collect()
+}
+
+/// What is baked besides an object does not matter to its texels: a bake may be cut into any parts.
+#[test]
+fn an_object_baked_alone() {
+    let scene = vitrine();
+    let all = bake(&scene, 2, Layout::Packed);
+    for id in ["floor", "paint"] {
+        let mut alone = scene.clone();
+        alone
+            .instances
+            .iter_mut()
+            .filter(|instance| instance.id.as_str() != id)
+            .for_each(|other| other.lightmap = None);
+        let alone = bake(&alone, 2, Layout::Packed);
+        assert_eq!(alone.placements.len(), 1);
+        let texels = own_texels(&all, id);
+        assert!(texels.len() >= 9 && texels.iter().any(|texel| texel[0] != 0), "{id}: {texels:?}");
+        assert!(texels == own_texels(&alone, id), "{id} differs where it is baked alone");
+    }
+}
+
+fn measure(points: &[MeterPoint], threads: usize) -> Vec<MeterReading> {
+    let settings =
+        MeterSettings { transport: Transport::default(), samples_per_point: 64, threads: NonZeroUsize::new(threads) };
+    measure_irradiance(&vitrine(), points, &settings, &(), &CancelToken::default()).unwrap().readings
+}
+
+#[test]
+fn points_in_any_order_and_alone() {
+    let points = on_walls(Vec3::splat(-0.9), Vec3::splat(0.9), 4);
+    let readings = measure(&points, 1);
+    assert!(readings.iter().filter(|reading| reading.irradiance.min_element() > 0.0).count() > 40);
+    let reversed: Vec<MeterPoint> = points.iter().rev().copied().collect();
+    for threads in [1, 2, 8] {
+        let mut back = measure(&reversed, threads);
+        back.reverse();
+        assert_eq!(Fingerprint::of_readings(&readings).same(&Fingerprint::of_readings(&back)), Ok(()));
+    }
+    for index in [0, 40, 95] {
+        assert_eq!(measure(&points[index..=index], 8), readings[index..=index]);
+    }
+    // The same place with another face is another point.
+    let turned = at(points[0].position, -points[0].normal);
+    assert_ne!(measure(&[turned], 1), readings[..1]);
+}
