@@ -15,7 +15,7 @@ const POINTS_PER_WALL: u32 = 8;
 const PATHS: u32 = 64;
 
 /// Estimates that an error is the root mean square of.
-const ESTIMATES: u64 = 4;
+const ESTIMATES: u64 = 16;
 
 const ALBEDOS: [f32; 11] = [0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.999];
 
@@ -28,12 +28,13 @@ pub fn sweep(effort: Effort) -> Sweep {
     let points: Vec<_> = (0..ESTIMATES).map(|seed| points_on_walls(in_f64(world), per_wall, seed)).collect();
     let truth = |albedo: f32| PI / (1.0 - f64::from(albedo));
     let mut notes = vec![format!(
-        "What it costs ({} paths each):\n{:>10}{:>14}{:>16}{:>14}",
+        "What it costs ({} paths each):\n{:>10}{:>14}{:>14}{:>14}{:>18}",
         6 * per_wall * u64::from(PATHS),
         "albedo",
         "rays/path",
         "rays",
-        "processor s"
+        "processor s",
+        "paths for 1 %"
     )];
     let mut ours = Vec::new();
     for albedo in ALBEDOS {
@@ -44,13 +45,15 @@ pub fn sweep(effort: Effort) -> Sweep {
         };
         let runs: Vec<_> = (0..ESTIMATES).map(run).collect();
         let report = &runs[0].report;
+        let error = rms_error(runs.iter().map(mean_irradiance), truth(albedo));
         notes.push(format!(
-            "{albedo:>10}{:>14.1}{:>16}{:>14.3}",
+            "{albedo:>10}{:>14.1}{:>14}{:>14.3}{:>18.0}",
             report.rays as f64 / report.samples as f64,
             report.rays,
-            report.cpu_seconds
+            report.cpu_seconds,
+            (error / 0.01).powi(2) * report.samples as f64
         ));
-        ours.push(rms_error(runs.iter().map(mean_irradiance), truth(albedo)));
+        ours.push(error);
     }
     let naive = |cap: u32| {
         let error = |&albedo: &f32| {
@@ -73,9 +76,9 @@ pub fn sweep(effort: Effort) -> Sweep {
         error: Axis { title: "relative error", decades: [-5, 1], step: 1 },
         difficulties: ALBEDOS.iter().map(|&albedo| 1.0 / (1.0 - f64::from(albedo))).collect(),
         curves: vec![
-            Curve { side: Side::Ours, name: "bevy_kiln", errors: ours, label: [0.55, 0.3] },
-            Curve { side: Side::Naive, name: "3 bounces (Godot)", errors: naive(3), label: [0.1, 0.9] },
-            Curve { side: Side::Naive, name: "8 bounces", errors: naive(8), label: [0.35, 0.6] },
+            Curve { side: Side::Ours, name: "bevy_kiln", errors: ours, label: [0.5, 0.3] },
+            Curve { side: Side::Naive, name: "3 bounces (Godot)", errors: naive(3), label: [0.1, 0.92] },
+            Curve { side: Side::Naive, name: "8 bounces", errors: naive(8), label: [0.38, 0.64] },
         ],
         notes,
     }

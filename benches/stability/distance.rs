@@ -41,10 +41,14 @@ pub fn sweep(effort: Effort) -> Sweep {
         error: Axis { title: "relative error", decades: [-7, 2], step: 2 },
         difficulties,
         curves: vec![
-            Curve { side: Side::Ours, name: "bevy_kiln", errors: ours, label: [0.05, 0.3] },
-            Curve { side: Side::Naive, name: "area sampling", errors: naive, label: [0.25, 0.8] },
+            Curve { side: Side::Ours, name: "bevy_kiln", errors: ours, label: [0.66, 0.34] },
+            Curve { side: Side::Naive, name: "area sampling", errors: naive, label: [0.14, 0.6] },
         ],
-        notes: vec![],
+        notes: vec![
+            "So near, area sampling nearly always finds nothing, and once in many thousand samples far too much: its \
+             true root\nmean square error at 10⁻⁴ is 100 (√(A/3πh²N)), of which so few estimates see only the darkness."
+                .into(),
+        ],
     }
 }
 
@@ -74,12 +78,13 @@ fn ours(height: f64, seed: u64) -> f64 {
 }
 
 fn naive(height: f64, seed: u64) -> f64 {
+    let [low, _, high, _] = corners(height).map(DVec3::as_vec3);
     let sample = |index| {
         let [u, v, ..] = Numbers::new(combine(seed, 1), index).draw(0);
-        let [low, _, high, _] = corners(height);
-        let at = DVec3::new(low.x + (high.x - low.x) * f64::from(u), height, low.z + (high.z - low.z) * f64::from(v));
+        let at = low + (high - low) * Vec3::new(u, 0.0, v);
         // cos θ = cos θ' = height / d, and the area is 1.
-        height * height / at.length_squared().powi(2)
+        let (height, squared) = (low.y, at.length_squared());
+        f64::from(height * height / (squared * squared))
     };
     (0..u64::from(SAMPLES)).map(sample).sum::<f64>() / f64::from(SAMPLES)
 }

@@ -6,7 +6,7 @@
 
 use crate::numbers::Numbers;
 use bevy_kiln::bake::MeterPoint;
-use bevy_kiln::math::{Frame, square_to_cosine_hemisphere};
+use bevy_kiln::math::{Frame, combine, square_to_cosine_hemisphere};
 use bevy_kiln::trace::Tracer;
 use glam::Vec2;
 
@@ -40,15 +40,11 @@ pub struct PathTracer<'t> {
 impl PathTracer<'_> {
     /// Mean irradiance over points, so many paths each [lx].
     pub fn mean_irradiance(&self, points: &[MeterPoint], paths: u32, key: u64) -> f64 {
-        let paths = u64::from(paths);
-        let sum: f64 = points
-            .iter()
-            .enumerate()
-            .map(|(index, point)| {
-                let numbers = |path| Numbers::new(key, index as u64 * paths + path);
-                (0..paths).map(|path| f64::from(self.radiance(point, numbers(path)))).sum::<f64>()
-            })
-            .sum();
+        let at_point = |(index, point)| {
+            let numbers = |path| Numbers::new(combine(key, index), u64::from(path));
+            (0..paths).map(|path| f64::from(self.radiance(point, numbers(path)))).sum::<f64>()
+        };
+        let sum: f64 = (0..).zip(points).map(at_point).sum();
         std::f64::consts::PI * sum / (paths as usize * points.len()) as f64
     }
 

@@ -19,8 +19,13 @@ const MARGINS: [f64; 4] = [58.0, 40.0, 18.0, 50.0];
 
 const COLUMNS: usize = 3;
 
+/// Sizes of a panel's title, of labels, and of the axes' numbers [pixels].
+const TITLE: f64 = 16.0;
+const LABEL: f64 = 13.5;
+const NUMBER: f64 = 12.0;
+
 /// Height of the headline over the panels [pixels].
-const HEADLINE: f64 = 56.0;
+const HEADLINE: f64 = 78.0;
 
 const FONT: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
 
@@ -42,7 +47,9 @@ pub fn all(sweeps: &[Sweep]) -> Result<String> {
     let rows = (sweeps.len() + 1).div_ceil(COLUMNS);
     let size = [PANEL[0] * COLUMNS as f64, HEADLINE + PANEL[1] * rows as f64];
     draw(size, |sheet| {
-        sheet.text("Harder and harder: who stays on the line?", [20.0, 30.0], &Words::new(22.0).bold())?;
+        sheet.text("Hard cases, harder and harder", [20.0, 28.0], &Words::new(23.0).bold())?;
+        let about = "Relative error of the light, measured against closed forms. Difficulty grows to the right.";
+        sheet.text(about, [20.0, 56.0], &Words::new(LABEL).colour(QUIET))?;
         let place = |index: usize| {
             sheet.at(PANEL[0] * (index % COLUMNS) as f64, HEADLINE + PANEL[1] * (index / COLUMNS) as f64)
         };
@@ -160,7 +167,7 @@ impl Sheet<'_, '_> {
         let [left, top, right, bottom] = MARGINS;
         let square = self.at(left, top);
         let size = [PANEL[0] - left - right, PANEL[1] - top - bottom];
-        self.text(sweep.title, [left, 22.0], &Words::new(15.0).bold())?;
+        self.text(sweep.title, [left, 22.0], &Words::new(TITLE).bold())?;
         square.grid(sweep, size)?;
         let mut marks = [Mark::Square, Mark::Triangle].into_iter().cycle();
         // Ours last, on top.
@@ -181,21 +188,21 @@ impl Sheet<'_, '_> {
         for power in across.powers() {
             let x = width * across.share(10_f64.powi(power));
             self.line(&[[x, 0.0], [x, height]], GRID, 1.0)?;
-            let words = Words::new(11.0).colour(QUIET).anchored(HPos::Center, VPos::Top);
+            let words = Words::new(NUMBER).colour(QUIET).anchored(HPos::Center, VPos::Top);
             self.text(&power_of_ten(power), [x, height + 6.0], &words)?;
         }
         for power in up.powers() {
             let y = height * (1.0 - up.share(10_f64.powi(power)));
             self.line(&[[0.0, y], [width, y]], if power == 0 { FRAME } else { GRID }, 1.0)?;
-            let words = Words::new(11.0).colour(QUIET).anchored(HPos::Right, VPos::Center);
+            let words = Words::new(NUMBER).colour(QUIET).anchored(HPos::Right, VPos::Center);
             self.text(&power_of_ten(power), [-6.0, y], &words)?;
         }
         self.line(&[[0.0, 0.0], [0.0, height], [width, height]], FRAME, 1.25)?;
-        let words = Words::new(12.0).anchored(HPos::Center, VPos::Top);
-        self.text(across.title, [0.5 * width, height + 24.0], &words)?;
+        let words = Words::new(LABEL).anchored(HPos::Center, VPos::Top);
+        self.text(across.title, [0.5 * width, height + 25.0], &words)?;
         let turned =
-            Words { turned: FontTransform::Rotate270, ..Words::new(12.0).anchored(HPos::Center, VPos::Center) };
-        self.text(up.title, [-44.0, 0.5 * height], &turned)
+            Words { turned: FontTransform::Rotate270, ..Words::new(LABEL).anchored(HPos::Center, VPos::Center) };
+        self.text(up.title, [-46.0, 0.5 * height], &turned)
     }
 
     fn curve(&self, sweep: &Sweep, curve: &Curve, [width, height]: [f64; 2], look: (Mark, RGBColor)) -> Result<()> {
@@ -211,17 +218,18 @@ impl Sheet<'_, '_> {
         for &point in &points {
             self.mark(mark, point, colour)?;
         }
-        let [x, y] = curve.label;
-        self.text(curve.name, [width * x, height * (1.0 - y)], &Words::new(12.5).bold().colour(colour))
+        let [x, y] = [width * curve.label[0], height * (1.0 - curve.label[1])];
+        self.mark(mark, [x, y], colour)?;
+        self.text(curve.name, [x + 9.0, y], &Words::new(LABEL).bold().colour(colour))
     }
 
     /// What the panels have in common.
     fn legend(&self) -> Result<()> {
         let left = MARGINS[0];
-        self.text("How to read this", [left, 22.0], &Words::new(15.0).bold())?;
+        self.text("How to read this", [left, 22.0], &Words::new(TITLE).bold())?;
         let lines = [
             (&[Mark::Disc][..], OURS, "bevy_kiln"),
-            (&[Mark::Square, Mark::Triangle][..], NAIVE, "what other bakers and textbooks do"),
+            (&[Mark::Square, Mark::Triangle][..], NAIVE, "other bakers and textbooks"),
         ];
         for (row, (marks, colour, name)) in lines.into_iter().enumerate() {
             let y = 54.0 + 24.0 * row as f64;
@@ -230,19 +238,18 @@ impl Sheet<'_, '_> {
                 let x = left + 40.0 * (index as f64 + 1.0) / (marks.len() as f64 + 1.0);
                 self.mark(mark, [x, y], colour)?;
             }
-            self.text(name, [left + 50.0, y], &Words::new(12.5).bold().colour(colour))?;
+            self.text(name, [left + 50.0, y], &Words::new(LABEL).bold().colour(colour))?;
         }
         let lines = [
-            "Each panel makes one thing harder from left to",
-            "right (the room: from tiny to huge).",
-            "Errors are relative to a closed form;",
-            "1 is as much as all of the light.",
-            "Both sides trace the same rays on the same",
-            "number of samples. A mark on an edge lies",
-            "beyond it.",
+            "Every panel makes one thing harder, and both",
+            "sides get the same number of samples.",
+            "1 is an error as large as the light itself:",
+            "all of it lost, or as much again made up.",
+            "A mark on the lower edge lies below it.",
+            "Where theirs does better, the tables say so.",
         ];
         for (row, line) in lines.into_iter().enumerate() {
-            self.text(line, [left, 112.0 + 20.0 * row as f64], &Words::new(12.5).colour(INK))?;
+            self.text(line, [left, 116.0 + 22.0 * row as f64], &Words::new(LABEL).colour(INK))?;
         }
         Ok(())
     }

@@ -14,13 +14,13 @@ use std::f64::consts::PI;
 const ALBEDO: f32 = 0.8;
 
 /// Points of each estimate, on each of six walls.
-const POINTS_PER_WALL: u32 = 64;
+const POINTS_PER_WALL: u32 = 32;
 
 /// Paths from each point.
 const PATHS: u32 = 64;
 
 /// Estimates that an error is the root mean square of.
-const ESTIMATES: u64 = 8;
+const ESTIMATES: u64 = 16;
 
 pub fn sweep(effort: Effort) -> Sweep {
     let difficulties: Vec<f64> = (-4..=5).map(|power| 10_f64.powi(power)).collect();
@@ -47,19 +47,19 @@ pub fn sweep(effort: Effort) -> Sweep {
                 side: Side::Ours,
                 name: "bevy_kiln",
                 errors: trials.iter().map(Trial::ours).collect(),
-                label: [0.35, 0.2],
+                label: [0.38, 0.2],
             },
             Curve {
                 side: Side::Naive,
                 name: "bias 0.5 mm (Godot)",
                 errors: trials.iter().map(|trial| trial.naive(GODOT_BIAS)).collect(),
-                label: [0.4, 0.75],
+                label: [0.33, 0.66],
             },
             Curve {
                 side: Side::Naive,
                 name: "bias 10 mm (Fyrox)",
                 errors: trials.iter().map(|trial| trial.naive(FYROX_BIAS)).collect(),
-                label: [0.25, 0.9],
+                label: [0.26, 0.92],
             },
         ],
         notes: vec![],

@@ -48,12 +48,12 @@ pub fn sweep(effort: Effort) -> Sweep {
              An error of 0 is shown as {NONE:.0e}."
         ),
         difficulty: Axis { title: "samples", decades: [3, 9], step: 1 },
-        error: Axis { title: "relative error", decades: [-17, 1], step: 4 },
+        error: Axis { title: "relative error", decades: [-17, 2], step: 4 },
         difficulties: counts.iter().map(|&count| count as f64).collect(),
         curves: vec![
-            Curve { side: Side::Ours, name: "bevy_kiln: f64", errors: ours, label: [0.5, 0.2] },
-            Curve { side: Side::Naive, name: "half-float sum (Godot)", errors: half, label: [0.1, 0.95] },
-            Curve { side: Side::Naive, name: "f32 sum", errors: single, label: [0.5, 0.5] },
+            Curve { side: Side::Ours, name: "bevy_kiln: f64", errors: ours, label: [0.3, 0.2] },
+            Curve { side: Side::Naive, name: "half-float sum (Godot)", errors: half, label: [0.06, 0.96] },
+            Curve { side: Side::Naive, name: "f32 sum", errors: single, label: [0.5, 0.6] },
         ],
         notes: vec![],
     }

@@ -16,7 +16,7 @@ pub struct Curve {
     pub name: &'static str,
     /// Relative error at each difficulty. No number where the method gave none.
     pub errors: Vec<f64>,
-    /// Where the plot names it: left end of the text's baseline, in the plot's own square, from the lower left.
+    /// Where the plot names it: left end of the text, in the plot's own square, from the lower left.
     pub label: [f64; 2],
 }
 
@@ -96,8 +96,10 @@ impl Sweep {
         }
         let Some(ours) = self.curves.iter().find(|curve| curve.side == Side::Ours) else { return text };
         for naive in self.curves.iter().filter(|curve| curve.side == Side::Naive) {
-            // Two estimates of the same noise differ by less than this.
-            let better = |index: &usize| naive.errors[*index] < 0.7 * ours.errors[*index];
+            // Two estimates of the same noise differ by less than this; and what is less than f32 can tell is none.
+            let better = |index: &usize| {
+                naive.errors[*index] < 0.7 * ours.errors[*index] && ours.errors[*index] > f64::from(f32::EPSILON)
+            };
             let at: Vec<String> = (0..self.difficulties.len())
                 .filter(better)
                 .map(|index| {
