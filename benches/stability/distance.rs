@@ -38,11 +38,11 @@ pub fn sweep(effort: Effort) -> Sweep {
              uniformly on the lamp, E = L·cosθ·cosθ'·A/d², the textbook's area light."
         ),
         difficulty: Axis { title: "distance [lamp widths]", decades: [4, -4], step: 2 },
-        error: Axis { title: "relative error", decades: [-7, 2], step: 2 },
+        error: Axis { title: "relative error", decades: [-9, 3], step: 3 },
         difficulties,
         curves: vec![
-            Curve { side: Side::Ours, name: "bevy_kiln", errors: ours, label: [0.66, 0.34] },
-            Curve { side: Side::Naive, name: "area sampling", errors: naive, label: [0.14, 0.6] },
+            Curve { side: Side::Ours, name: "bevy_kiln", errors: ours, label: [0.66, 0.4] },
+            Curve { side: Side::Naive, name: "area sampling", errors: naive, label: [0.14, 0.64] },
         ],
         notes: vec![
             "So near, area sampling nearly always finds nothing, and once in many thousand samples far too much: its \
