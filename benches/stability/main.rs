@@ -5,7 +5,7 @@
 //! cargo bench --no-default-features --features bake --bench stability
 //! ```
 //!
-//! `--quick` after `--` does a sixty-fourth of the work and writes no picture; names of sweeps make only these, and the
+//! `--quick` after `--`, and `cargo test --benches`, do a sixty-fourth of the work and write no picture; names of sweeps make only these, and the
 //! picture of all only if all were made. Pictures and errors are the same from run to run; processor times are
 //! printed only.
 
@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // What cargo adds, such as --bench, is no name of a sweep and is passed over.
     let words: Vec<String> = std::env::args().skip(1).collect();
     let is_asked = |name: &str| words.iter().any(|word| word == name);
-    let effort = if is_asked("--quick") { Effort::Quick } else { Effort::Full };
+    let effort = if is_asked("--quick") || !is_asked("--bench") { Effort::Quick } else { Effort::Full };
     let all = !SWEEPS.iter().any(|(name, _)| is_asked(name)) && !is_asked("line4");
     let mut sweeps = Vec::new();
     for (name, make) in SWEEPS.iter().filter(|(name, _)| all || is_asked(name)) {

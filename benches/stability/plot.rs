@@ -48,7 +48,7 @@ pub fn all(sweeps: &[Sweep]) -> Result<String> {
     let size = [PANEL[0] * COLUMNS as f64, HEADLINE + PANEL[1] * rows as f64];
     draw(size, |sheet| {
         sheet.text("Hard cases, harder and harder", [20.0, 28.0], &Words::new(23.0).bold())?;
-        let about = "Relative error of the light, measured against closed forms. Difficulty grows to the right.";
+        let about = "Relative error of the light, measured against closed forms.";
         sheet.text(about, [20.0, 56.0], &Words::new(LABEL).colour(QUIET))?;
         let place = |index: usize| {
             sheet.at(PANEL[0] * (index % COLUMNS) as f64, HEADLINE + PANEL[1] * (index / COLUMNS) as f64)
@@ -241,8 +241,9 @@ impl Sheet<'_, '_> {
             self.text(name, [left + 50.0, y], &Words::new(LABEL).bold().colour(colour))?;
         }
         let lines = [
-            "Every panel makes one thing harder, and both",
-            "sides get the same number of samples.",
+            "Each panel makes one thing harder to the right;",
+            "the room is hard at both ends. Both sides get",
+            "the same number of samples.",
             "1 is an error as large as the light itself:",
             "all of it lost, or as much again made up.",
             "A mark on the lower edge lies below it.",
