@@ -5,9 +5,9 @@
 //! cargo bench --no-default-features --features bake --bench stability
 //! ```
 //!
-//! `--quick` after `--`, and `cargo test --benches`, do a sixty-fourth of the work and write no picture; names of sweeps make only these, and the
-//! picture of all only if all were made. Pictures and errors are the same from run to run; processor times are
-//! printed only.
+//! `--quick` after `--`, and `cargo test --benches`, do a sixty-fourth of the work and write no picture; names of
+//! sweeps make only these, and the picture of all only if all were made. Pictures and errors are the same from run to
+//! run; processor times are printed only.
 
 mod albedo;
 mod cornell;
