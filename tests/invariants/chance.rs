@@ -4,8 +4,16 @@ use proptest::strategy::Strategy;
 use proptest::test_runner::{Config, RngSeed, TestCaseError, TestError, TestRunner};
 use std::fmt::{Debug, Display};
 
-/// Steps of shrinking, each of which renders: enough for a list of a few parts.
-const SHRINKS: u32 = 40;
+/// How long to look.
+#[derive(Clone, Copy, Debug)]
+pub struct Search {
+    pub cases: u32,
+    /// Steps of shrinking, each of which renders.
+    pub shrinks: u32,
+}
+
+/// Steps enough for a list of a few parts.
+const SHRINKS: u32 = 24;
 
 /// The smallest case found that breaks a law, and how.
 pub struct Broken<T> {
@@ -13,15 +21,14 @@ pub struct Broken<T> {
     pub reason: String,
 }
 
-/// Tries a law on so many cases.
-pub fn run<T: Clone + Debug>(
-    cases: u32,
+fn run<T: Clone + Debug>(
+    search: Search,
     strategy: impl Strategy<Value = T>,
     law: impl Fn(&T) -> Result<(), String>,
 ) -> Result<(), Broken<T>> {
     let config = Config {
-        cases,
-        max_shrink_iters: SHRINKS,
+        cases: search.cases,
+        max_shrink_iters: search.shrinks,
         failure_persistence: None,
         rng_seed: RngSeed::Fixed(0x6b69_6c6e),
         ..Config::default()
@@ -40,18 +47,18 @@ pub fn holds<T: Clone + Debug + Display>(
     strategy: impl Strategy<Value = T>,
     law: impl Fn(&T) -> Result<(), String>,
 ) {
-    if let Err(Broken { case, reason }) = run(cases, strategy, law) {
+    if let Err(Broken { case, reason }) = run(Search { cases, shrinks: SHRINKS }, strategy, law) {
         panic!("{reason}\nin the smallest scene that was found:\n{case}");
     }
 }
 
 /// The smallest case in which a planted fault is found; panics if none is.
 pub fn finds<T: Clone + Debug>(
-    cases: u32,
+    search: Search,
     strategy: impl Strategy<Value = T>,
     law: impl Fn(&T) -> Result<(), String>,
 ) -> Broken<T> {
-    match run(cases, strategy, law) {
+    match run(search, strategy, law) {
         Err(broken) => broken,
         Ok(()) => panic!("a planted fault was not found"),
     }

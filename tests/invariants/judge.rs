@@ -50,8 +50,10 @@ pub fn settle(tolerance: f64, measure: impl Fn(u32) -> [Mean; 2]) -> Result<(), 
     let mut samples = PATHS[0];
     loop {
         let [a, b] = measure(samples);
-        let is_quiet = 4.0 * a.error.hypot(b.error) <= 0.5 * tolerance * a.value.max(b.value);
-        if is_quiet || samples >= PATHS[1] {
+        let (noise, limit) = (4.0 * a.error.hypot(b.error), tolerance * a.value.max(b.value));
+        // Quiet enough, or so far apart that no noise would do it.
+        let is_clear = noise <= 0.5 * limit || (a.value - b.value).abs() > limit + 2.0 * noise;
+        if is_clear || samples >= PATHS[1] {
             return same(a, b, tolerance);
         }
         samples *= 4;

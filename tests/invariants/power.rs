@@ -1,7 +1,7 @@
 //! Light adds up, and is as strong as what gives it.
 
 use crate::Fault;
-use crate::chance::{finds, holds};
+use crate::chance::{Search, finds, holds};
 use crate::common::scenes::SceneBuilder;
 use crate::judge::{Mean, settle};
 use crate::sketch::{ALL, INDOORS, Shell, Sketch, sketches};
@@ -60,14 +60,18 @@ fn lights_add_up() {
 
 #[test]
 fn a_lamp_counted_twice_is_found() {
-    let found = finds(4, sketches(SHELLS, INDOORS), |sketch| superposition(sketch, Fault::LampTwice));
+    let found = finds(Search { cases: 4, shrinks: 24 }, sketches(SHELLS, INDOORS), |sketch| {
+        superposition(sketch, Fault::LampTwice)
+    });
     // Shrunk to what can be read.
     assert!(found.case.lamps.len() == 1 && found.case.blocks.is_empty(), "{}\n{}", found.reason, found.case);
 }
 
 #[test]
 fn a_missing_bounce_is_found() {
-    finds(4, sketches(&[Shell::Closed], INDOORS), |sketch| superposition(sketch, Fault::BounceMissing));
+    finds(Search { cases: 4, shrinks: 24 }, sketches(&[Shell::Closed], INDOORS), |sketch| {
+        superposition(sketch, Fault::BounceMissing)
+    });
 }
 
 fn readings(scene: &Scene, sketch: &Sketch) -> Vec<MeterReading> {
@@ -122,7 +126,9 @@ fn light_is_linear_in_power() {
 
 #[test]
 fn one_percent_more_light_is_found() {
-    let found = finds(2, sketches(SHELLS, INDOORS), |sketch| linearity(sketch, Fault::OnePercent));
+    let found = finds(Search { cases: 2, shrinks: 24 }, sketches(SHELLS, INDOORS), |sketch| {
+        linearity(sketch, Fault::OnePercent)
+    });
     assert!(found.case.lamps.len() == 1 && found.case.blocks.is_empty(), "{}\n{}", found.reason, found.case);
 }
 
