@@ -35,6 +35,8 @@ enum Fault {
     BounceMissing,
     /// One side is a hundredth brighter.
     OnePercent,
+    /// One side is a twenty-fifth brighter.
+    MoreLight,
     /// Random numbers go by an object's place in the list.
     KeyOfTurn,
     /// A piece is left out.

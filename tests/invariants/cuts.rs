@@ -44,9 +44,10 @@ fn loses_a_piece(mut scene: Scene) -> Scene {
     scene
 }
 
-/// By how much a cut may change what the same random numbers find: paths meet the same points but for rounding, and
-/// one in some thousands goes by on the other side of an edge.
-const SAME_PATHS: f64 = 2e-3;
+/// By how much a cut may change what the same random numbers find, of the mean over all points: paths meet the same
+/// points but for rounding. One that leaves on the other side of an edge for it, or goes on where it ended, would change
+/// a mean of 2000 paths by more.
+const SAME_PATHS: f64 = 1e-5;
 
 /// Walls and blocks cut, lamps not: the same random numbers, the same paths.
 fn cut_in_four(sketch: &Sketch, fault: Fault) -> Result<(), String> {
@@ -69,7 +70,7 @@ const SHELLS: &[Shell] = &[Shell::Closed, Shell::Open];
 
 #[test]
 fn triangles_cut_in_four() {
-    holds(12, sketches(SHELLS, ALL), |sketch| cut_in_four(sketch, Fault::None));
+    holds(32, sketches(SHELLS, ALL), |sketch| cut_in_four(sketch, Fault::None));
 }
 
 #[test]
@@ -156,7 +157,7 @@ fn in_pieces(sketch: &Sketch, fault: Fault) -> Result<(), String> {
 
 #[test]
 fn a_floor_in_pieces() {
-    holds(6, sketches(&[Shell::Closed], INDOORS), |sketch| in_pieces(sketch, Fault::None));
+    holds(4, sketches(&[Shell::Closed], INDOORS), |sketch| in_pieces(sketch, Fault::None));
 }
 
 #[test]
@@ -169,7 +170,7 @@ fn a_floor_with_a_hole_is_found() {
 /// and nothing else changes a bit.
 #[test]
 fn what_a_black_floor_in_pieces_leaves_alone() {
-    holds(8, sketches(SHELLS, ALL), |sketch| {
+    holds(24, sketches(SHELLS, ALL), |sketch| {
         let sketch = Sketch { walls: [sketch.walls[0], sketch.walls[1], 0, 5, 5, 5], ..sketch.clone() };
         let [whole, pieces] = [sketch.scene(), floor_in_pieces(&sketch)].map(|scene| bake(&scene, 16, 1));
         for wall in ["-x", "-z", "+z", "block"] {

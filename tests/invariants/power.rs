@@ -54,7 +54,7 @@ const SHELLS: &[Shell] = &[Shell::Closed, Shell::Open];
 
 #[test]
 fn lights_add_up() {
-    holds(10, sketches(SHELLS, INDOORS), |sketch| superposition(sketch, Fault::None));
+    holds(14, sketches(SHELLS, INDOORS), |sketch| superposition(sketch, Fault::None));
     holds(6, sketches(&[Shell::Open], ALL), |sketch| superposition(sketch, Fault::None));
 }
 
@@ -121,7 +121,7 @@ fn linearity(sketch: &Sketch, fault: Fault) -> Result<(), String> {
 
 #[test]
 fn light_is_linear_in_power() {
-    holds(12, sketches(SHELLS, ALL), |sketch| linearity(sketch, Fault::None));
+    holds(32, sketches(SHELLS, ALL), |sketch| linearity(sketch, Fault::None));
 }
 
 #[test]
