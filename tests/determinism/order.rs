@@ -30,12 +30,13 @@ fn one_thread_and_two_and_eight() {
     }
 }
 
-/// A closed room, whose energy balance is summed over what all threads bring; one wall has no texels, so that the
-/// balance has to send paths of its own.
+/// A closed room, whose energy balance is summed over what all threads bring; one wall alone has texels, so that
+/// nearly all of it comes from paths of the balance's own, and the order of their sum shows.
 #[test]
 fn the_energy_balance_of_one_thread_and_two_and_eight() {
-    let mut room = lit_room(0.5, 10.0);
-    room.instances[0].lightmap = None;
+    // An albedo of many digits: with ½, every sum would be exact in any order.
+    let mut room = lit_room(0.3, 10.0);
+    room.instances[1..].iter_mut().for_each(|wall| wall.lightmap = None);
     let one = bake(&room, 1, Layout::Packed);
     assert!(one.report.energy_balance.is_some_and(|balance| (0.9..1.1).contains(&balance)));
     assert_same(&one, &bake(&room, 2, Layout::Packed));
