@@ -66,8 +66,8 @@ fn cut_in_four(sketch: &Sketch, fault: Fault) -> Result<(), String> {
     let [whole, pieces] = [&scene, &cut]
         .map(|scene| read(scene, &sketch.points(), 256, Transport::default()))
         .map(|readings| readings.iter().map(|reading| reading.irradiance.y).collect::<Vec<f64>>());
-    let is_apart = |(whole, pieces): (&f64, &f64)| !((whole - pieces).abs() <= ROUNDING * whole);
-    let apart = whole.iter().zip(&pieces).filter(|&pair| is_apart(pair)).count();
+    let is_same = |(whole, pieces): (&f64, &f64)| (whole - pieces).abs() <= ROUNDING * whole;
+    let apart = whole.len() - whole.iter().zip(&pieces).filter(|&pair| is_same(pair)).count();
     if 4 * apart > whole.len() {
         return Err(format!("other paths at {apart} of {} points: {whole:?} and {pieces:?}", whole.len()));
     }
