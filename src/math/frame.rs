@@ -15,10 +15,12 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The basis around `normal`, which has unit length. The tangent jumps only where `normal.z` changes sign.
+    /// The basis around `normal`, which has unit length. The tangent jumps only where `normal.z` changes sign; −0 is 0,
+    /// since two triangles of one wall may differ in that, and are to be the same wall to a path.
     #[inline]
     pub fn new(normal: Vec3) -> Self {
-        let (tangent, bitangent) = normal.any_orthonormal_pair();
+        // Takes the sign from a zero.
+        let (tangent, bitangent) = (normal + Vec3::ZERO).any_orthonormal_pair();
         Self { tangent, bitangent, normal }
     }
 
@@ -50,6 +52,17 @@ mod tests {
             assert!((f.tangent.length() - 1.0).abs() < 1e-6 && (f.bitangent.length() - 1.0).abs() < 1e-6, "{f:?}");
             assert!(f.tangent.dot(normal).abs() < 1e-6 && f.bitangent.dot(normal).abs() < 1e-6, "{f:?}");
             assert!((f.tangent.cross(f.bitangent) - normal).length() < 1e-6, "{f:?}");
+        }
+    }
+
+    #[test]
+    fn the_sign_of_a_zero_does_not_matter() {
+        for (normal, other) in [
+            (Vec3::new(1.0, 0.0, 0.0), Vec3::new(1.0, -0.0, -0.0)),
+            (Vec3::new(0.0, -1.0, 0.0), Vec3::new(-0.0, -1.0, -0.0)),
+            (Vec3::new(0.6, 0.8, 0.0), Vec3::new(0.6, 0.8, -0.0)),
+        ] {
+            assert_eq!(Frame::new(normal), Frame::new(other));
         }
     }
 

@@ -29,7 +29,7 @@ pub const HELD: [Held; 3] = [
         layout: Layout::Shared { size: 32 },
     },
     Held { name: "garden", hash: 0x5372_f327_8594_d685, scene: garden, density: 5.0, layout: Layout::Packed },
-    Held { name: "vitrine", hash: 0x5cdd_d82d_e80d_1abe, scene: vitrine, density: 4.0, layout: Layout::Packed },
+    Held { name: "vitrine", hash: 0x8b9a_5018_6a55_96df, scene: vitrine, density: 4.0, layout: Layout::Packed },
 ];
 
 impl Held {

@@ -9,7 +9,7 @@ use bevy_kiln::scene::{
 };
 use glam::{Quat, Vec2, Vec3};
 
-/// A floor with relief, a wall of each kind of gloss, a block of green glass, four lamps and a sky.
+/// A floor with relief, a wall of each kind of gloss, a block of green glass, five lamps and a sky.
 pub fn vitrine() -> Scene {
     let standard = |standard: Standard| Scattering::Standard(Box::new(standard));
     let interior = Interior::Volume { attenuation_colour: Vec3::new(0.3, 0.9, 0.5), attenuation_distance: 0.4 };
@@ -45,7 +45,7 @@ pub fn vitrine() -> Scene {
     scene
 }
 
-fn lamps() -> [Light; 3] {
+fn lamps() -> [Light; 4] {
     let bulb = |name: &str, position: Vec3, radius: f32| PointLight {
         id: StableId::new(name),
         name: name.into(),
@@ -67,7 +67,11 @@ fn lamps() -> [Light; 3] {
         illuminance: Vec3::splat(2.0),
         angular_diameter: 0.05,
     };
-    [Light::Point(bulb("ball", Vec3::new(-0.5, 0.8, 0.6), 0.1)), Light::Spot(spot), Light::Directional(sun)]
+    let (direction, illuminance) = (Vec3::new(-0.48, -0.8, 0.36), Vec3::new(0.1, 0.2, 0.4));
+    let moon =
+        DirectionalLight { id: StableId::new("moon"), name: "moon".into(), direction, illuminance, ..sun.clone() };
+    let ball = bulb("ball", Vec3::new(-0.5, 0.8, 0.6), 0.1);
+    [Light::Point(ball), Light::Spot(spot), Light::Directional(sun), Light::Directional(moon)]
 }
 
 fn sky() -> EnvironmentMap {
