@@ -69,6 +69,7 @@ impl Compiled {
         for index in instances {
             world.add_instance(scene, index, sound.lightmaps[index]);
         }
+        world.move_to_traced_frame();
         world.add_emitters();
         for light in lights {
             if effects.has(effect_of(light)) {

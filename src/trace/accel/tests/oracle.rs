@@ -25,14 +25,19 @@ impl Segment {
 
 /// The distance of the nearest hit, by testing all; `None` for none.
 fn nearest_of_all(accel: &Accel, segment: &Segment) -> Option<f32> {
-    let (origin, direction) = (segment.from * accel.scale, segment.direction());
+    let direction = segment.direction();
+    let (from, passed) = match accel.is_far(segment.from) {
+        true => accel.come_nearer(segment.from, direction)?,
+        false => (segment.from, 0.0),
+    };
+    let origin = from * accel.scale;
     let ray = ShearedRay::new(origin, direction);
     let start = End { position: origin, inwards: direction };
     let hits = accel.triangles.iter().filter_map(|(triangle, _)| {
         let crossing = ray.cross(triangle)?;
         start.is_behind(crossing.t, crossing.t_error, triangle).then_some(crossing.t)
     });
-    hits.min_by(f32::total_cmp).map(|t| t / accel.scale)
+    hits.min_by(f32::total_cmp).map(|t| (passed + f64::from(t / accel.scale)) as f32)
 }
 
 /// How a line crosses a triangle in f64 (Möller and Trumbore 1997): distance, and the least of the three weights.
