@@ -33,13 +33,25 @@
 //! ([`super::triangle`]), whose own error is 2⁻²⁹ of these.
 //!
 //! *What may be missed* in return: a start is no farther than (32 + 11.2)/32 = 1.35 d from its plane, d ≤ 1.91e-6·Σ|Nᵢ|·mᵢ,
-//! so a neighbour that lies farther above it is seen. In a corner of less than a right angle a start that is nearer to
-//! the edge than 1.35 d times the angle's cotangent lies beyond the other wall; where that angle is right or wider, never.
+//! so a neighbour that lies farther above it is seen.
+//!
+//! *Beside an edge* all that is not enough: a start within rounding of the edge may lie beyond the wall that stands
+//! there. Let walls meet at an angle θ; a start at a distance w from the edge and a height h lies w·sin θ − h·cos θ
+//! before the other wall, rounding (11.2 u·Σ|Nᵢ|·mᵢ) aside. Points that rays leave are therefore kept w = 64 u·max m off
+//! the edges of their triangle, a shift along the surface as small as that along the normal. With Σ|Nᵢ|·mᵢ ≤ √3·max m
+//! this is enough for θ ≥ 62° in the worst case, and in all cases for walls at right angles. In narrower corners the
+//! share of starts beyond the other wall is that of a strip as wide as h/tan θ.
 //!
 //! All of this holds barring underflow: for coordinates of zero or above 10⁻³⁰ m.
 
 use super::traced::TracedFromWorld;
 use glam::{DMat3, DVec3, Vec3};
+
+/// Width of the rim, in the largest error of a coordinate.
+const RIM: f64 = 2.0;
+
+/// The largest weight of a vertex on the rim: of triangles so narrow that they would be all rim, most is not.
+const WIDEST_RIM: f64 = 0.125;
 
 /// A triangle, in the world or in the traced frame, with what a ray that leaves it must know.
 #[derive(Clone, Copy, Debug)]
@@ -50,6 +62,8 @@ pub(super) struct TriangleShape {
     pub(super) normal: Vec3,
     /// Bound on the error of each coordinate of a point computed on it [m].
     pub(super) error: Vec3,
+    /// Per vertex, the least weight that a point keeps which rays leave.
+    pub(super) rim: [f32; 3],
 }
 
 /// Brings points to world space, or to the traced frame; rounds once, from f64.
@@ -106,8 +120,7 @@ impl Placement {
         let [a, b, c] = vertices.map(Vec3::as_dvec3);
         // Of the rounded vertices: that is the triangle that rays meet.
         let normal = (b - a).cross(c - a).try_normalize()?.as_vec3();
-        let error = position_error(vertices);
-        normal.is_finite().then_some(TriangleShape { vertices, normal, error })
+        normal.is_finite().then(|| TriangleShape::new(vertices, normal))
     }
 }
 
@@ -120,13 +133,41 @@ impl TriangleShape {
     /// The same triangle in the traced frame. Its vertices are moved exactly, so that its normal stays.
     pub(super) fn moved(&self, traced_from_world: TracedFromWorld) -> Self {
         let vertices = self.vertices.map(|vertex| traced_from_world.point(vertex));
-        Self { vertices, normal: self.normal, error: position_error(vertices) }
+        Self::new(vertices, self.normal)
     }
 
-    /// The point with these weights of the second and third vertex.
+    fn new(vertices: [Vec3; 3], normal: Vec3) -> Self {
+        let error = position_error(vertices);
+        let [a, b, c] = vertices.map(Vec3::as_dvec3);
+        let double_area = (b - a).cross(c - a).length();
+        let width = RIM * f64::from(error.max_element());
+        let rim = [c - b, a - c, b - a].map(|edge| (width * edge.length() / double_area).min(WIDEST_RIM) as f32);
+        Self { vertices, normal, error, rim }
+    }
+
+    /// The point with these weights of the second and third vertex, kept off the edges by the rim.
+    #[inline]
     pub(super) fn position(&self, [second, third]: [f32; 2]) -> Vec3 {
+        let weights = [1.0 - second - third, second, third];
+        if (0..3).any(|vertex| weights[vertex] < self.rim[vertex]) {
+            return self.interpolate(self.off_the_edges(weights));
+        }
+        self.interpolate([second, third])
+    }
+
+    #[inline]
+    fn interpolate(&self, [second, third]: [f32; 2]) -> Vec3 {
         let [a, b, c] = self.vertices;
         a + (b - a) * second + (c - a) * third
+    }
+
+    /// Weights of the second and third vertex, none of the three below the rim: the largest gives what the others get.
+    #[cold]
+    fn off_the_edges(&self, weights: [f32; 3]) -> [f32; 2] {
+        let mut inside = [0, 1, 2].map(|vertex| weights[vertex].max(self.rim[vertex]));
+        let largest = if inside[0] >= inside[1].max(inside[2]) { 0 } else { 1 + usize::from(inside[2] > inside[1]) };
+        inside[largest] -= inside[0] + inside[1] + inside[2] - 1.0;
+        [inside[1], inside[2]]
     }
 
     /// Whether a point on the triangle, at these weights of the second and third vertex, is its own and not that of a

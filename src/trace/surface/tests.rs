@@ -213,10 +213,45 @@ fn points_lie_within_the_bound() {
         let [a, b, c] = shape.vertices.map(Vec3::as_dvec3);
         let weights = any_weights(&mut random);
         let point = a + (b - a) * f64::from(weights[0]) + (c - a) * f64::from(weights[1]);
-        let off = (shape.position(weights).as_dvec3() - point).abs();
+        let off = (shape.interpolate(weights).as_dvec3() - point).abs();
         worst = worst.max((off / shape.error.as_dvec3()).max_element());
     }
     assert!((0.05..10.1 / 32.0).contains(&worst), "{worst}");
+}
+
+/// Off the edges by the width of the rim, or by an eighth of the triangle, and nowhere moved by more than it.
+#[test]
+fn points_keep_off_the_edges() {
+    let mut random = Random::new(6);
+    let (mut kept, mut moved) = (0, 0);
+    for _ in 0..20_000 {
+        let place = of_any_size(&mut random, -1.0, 5.0) * vector(&mut random);
+        let vertices = [0, 1, 2].map(|_| place + vector(&mut random));
+        let Some(shape) = Placement::new(&Affine3A::IDENTITY).triangle(vertices) else {
+            continue;
+        };
+        let [s, t] = any_weights(&mut random);
+        let weights = [1.0 - s - t, s, t];
+        if (0..3).all(|vertex| weights[vertex] >= shape.rim[vertex]) {
+            assert_eq!(shape.position([s, t]), shape.interpolate([s, t]));
+            kept += 1;
+            continue;
+        }
+        moved += 1;
+        let [s, t] = shape.off_the_edges(weights);
+        let inside = [1.0 - s - t, s, t];
+        for vertex in 0..3 {
+            assert!(inside[vertex] >= 0.999 * shape.rim[vertex] - 2e-7, "{inside:?} {:?}", shape.rim);
+            assert!((inside[vertex] - weights[vertex]).abs() <= 0.2501, "{inside:?} {weights:?}");
+        }
+        let distance = 2.0 * shape.error.max_element();
+        let [a, b, c] = shape.vertices;
+        let height = 2.0 * shape.area() as f32 / (c - b).length();
+        if shape.rim[0] < 0.12 {
+            assert!((shape.rim[0] * height / distance - 1.0).abs() < 1e-3, "{a} {b} {c}");
+        }
+    }
+    assert!(kept > 1000 && moved > 1000, "{kept} {moved}");
 }
 
 /// The bound on the height at which a ray starts, between 0.65 and 1.35 of the move, in f64 of the rounded vertices.

@@ -188,6 +188,28 @@ fn a_room_far_away_is_the_room_at_home() {
             let home = world.map(|point| (point.as_dvec3() - origin).as_vec3());
             let found = answers(&far_tracer, world, index);
             lit += u32::from(f32::from_bits(found[8]) > 0.0);
+            if found != answers(&home_tracer, home, index) {
+                let direction = {
+                    let [u, v, ..] = Sobol::new(3, index).draw(Dimensions::Start);
+                    square_to_uniform_sphere(Vec2::new(u, v))
+                };
+                eprintln!(
+                    "DBG {:?} {:?}",
+                    far_tracer.start_at(world[0], direction),
+                    home_tracer.start_at(home[0], direction)
+                );
+                eprintln!(
+                    "DBG {:?} {:?}",
+                    far_tracer.closest_hit(world[0], direction),
+                    far_tracer.closest_hit(world[0], -direction)
+                );
+                eprintln!(
+                    "DBG {:?}",
+                    (0..10)
+                        .map(|i| (far_tracer.triangles[i].normal, home_tracer.triangles[i].normal))
+                        .collect::<Vec<_>>()
+                );
+            }
             assert_eq!(found, answers(&home_tracer, home, index), "{place}: {index}");
         }
         assert!(lit > 100, "{lit}");
