@@ -1,5 +1,5 @@
-//! From a scene to a [`Tracer`]: faults left out, the rest in world space and in an order of its own; and of that
-//! only what the plan asks for.
+//! From a scene to a [`Tracer`]: faults left out, the rest in the traced frame and in an order of its own; and of
+//! that only what the plan asks for.
 
 mod sound;
 mod world;
