@@ -29,7 +29,8 @@
 //! axis, so it sinks by at most 8.1 u·Σ|Nᵢ|·mᵢ.
 //!
 //! The sum is 19.3 u; k = 32 = 16 ε/u is the next power of two. A start is then 20.8 u·Σ|Nᵢ|·mᵢ above its plane or more
-//! and meets its triangle nowhere. Whether a hit near the start lies on the ray's side or the other is decided in f64
+//! and meets its triangle nowhere. In a plane along the axes through the traced origin, d = 0, interpolation is exact;
+//! the start lies in the plane itself, which is not met from there. Whether a hit near the start lies on the ray's side or the other is decided in f64
 //! ([`super::triangle`]), whose own error is 2⁻²⁹ of these.
 //!
 //! *What may be missed* in return: a start is no farther than (32 + 11.2)/32 = 1.35 d from its plane, d ≤ 1.91e-6·Σ|Nᵢ|·mᵢ,
@@ -193,22 +194,7 @@ impl TriangleShape {
     pub(super) fn leave(&self, position: Vec3, direction: Vec3) -> Vec3 {
         let normal = if self.normal.dot(direction) < 0.0 { -self.normal } else { self.normal };
         let distance = self.error.dot(normal.abs());
-        let moved = position + normal * distance;
-        // Where the move is lost in rounding, the next number on that side.
-        let step = |moved: f32, position: f32, normal: f32| {
-            if moved != position || normal == 0.0 {
-                moved
-            } else if normal > 0.0 {
-                moved.next_up()
-            } else {
-                moved.next_down()
-            }
-        };
-        Vec3::new(
-            step(moved.x, position.x, normal.x),
-            step(moved.y, position.y, normal.y),
-            step(moved.z, position.z, normal.z),
-        )
+        position + normal * distance
     }
 }
 

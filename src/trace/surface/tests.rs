@@ -273,7 +273,8 @@ fn starts_lie_at_the_stated_height() {
         let moved = shape.leave(shape.position(any_weights(&mut random)), shape.normal).as_dvec3();
         // A normal of f64 is off by more where its triangle is a needle.
         if shape.area() > 1e-6 * f64::from(longest(&shape)).powi(2) {
-            let share = normal.dot(moved - a) / shape.error.as_dvec3().dot(normal.abs());
+            let largest = a.abs().max(b.abs()).max(c.abs());
+            let share = normal.dot(moved - a) / (16.0 * f64::from(f32::EPSILON) * largest.dot(normal.abs()));
             (low, high) = (low.min(share), high.max(share));
         }
     }
