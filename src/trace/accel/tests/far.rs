@@ -87,6 +87,22 @@ fn past_the_rim_of_a_sphere() {
     assert!(met > 10_000 && passed > 5_000, "{met} {passed}");
 }
 
+/// A segment to somewhere so far that the square of its length is no f32.
+#[test]
+fn to_the_end_of_the_world() {
+    let accel = Accel::new(&Shape::cube().corners());
+    for distance in [1e6, 1e9, 1e12, 1e18, 1e30] {
+        let above = Vec3::new(0.3, distance, 0.4);
+        assert!(accel.is_blocked(Vec3::splat(0.5), above) && accel.is_blocked(above, Vec3::splat(0.5)), "{distance}");
+        let roof = Vec3::new(0.3, 1.5, 0.4);
+        assert!(!accel.is_blocked(roof, above) && !accel.is_blocked(above, roof), "{distance}");
+        assert!(
+            accel.is_blocked(above.with_y(-distance), above) && !accel.is_blocked(above + Vec3::X, above),
+            "{distance}"
+        );
+    }
+}
+
 /// A pane of 1 m² that glows with 1 cd/m² gives 1/d² lx, and shows 1 cd/m², however far away.
 #[test]
 fn a_pane_seen_from_afar() {

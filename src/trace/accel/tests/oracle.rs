@@ -207,3 +207,16 @@ fn nothing_beyond_the_end() {
     assert!(accel.is_blocked(Vec3::ZERO, Vec3::new(0.0, 0.0, 2.001)));
     assert!(!accel.is_blocked(Vec3::ZERO, Vec3::ZERO));
 }
+
+/// A segment that ends one step of f32 behind a wall is blocked, one that ends a step before it is not.
+#[test]
+fn an_end_next_to_a_wall() {
+    let accel = Accel::new(&[[Vec3::new(-9.0, -9.0, 0.3), Vec3::new(9.0, -9.0, 0.3), Vec3::new(0.0, 9.0, 0.3)]]);
+    let mut random = Random::new(7);
+    for _ in 0..20_000 {
+        let from = point(&mut random).with_z(0.4 + random.unit());
+        let to = point(&mut random);
+        assert!(accel.is_blocked(from, to.with_z(0.3_f32.next_down())), "{from} {to}");
+        assert!(!accel.is_blocked(from, to.with_z(0.3_f32.next_up())), "{from} {to}");
+    }
+}
