@@ -141,7 +141,7 @@ fn from_within(random: &mut Random, rays: u64) -> Tally {
     let decade = reach.log10().floor() as i32;
     let mut tally = Tally { shapes: 1, decades: [decade; 2], inside: rays, ..Tally::default() };
     for index in 0..rays {
-        let local = if index % 4 == 0 { Vec3::ZERO } else { 0.1 * random.unit() * random.direction() };
+        let local = if index.is_multiple_of(4) { Vec3::ZERO } else { 0.1 * random.unit() * random.direction() };
         let from = world_from_local.transform_point3(local.as_dvec3()).as_vec3();
         let triangle = (random.unit() * rounded.len() as f32) as usize % rounded.len();
         let target = target(rounded[triangle].map(Vec3::as_dvec3), random);
@@ -182,7 +182,7 @@ fn from_walls(random: &mut Random, rays: u64) -> Tally {
         let target = target(tracer.vertices(to).map(Vec3::as_dvec3), random);
         let direction = (target - start.origin().as_dvec3()).normalize_or_zero().as_vec3();
         if normal.dot(direction) <= 0.0 {
-            // Along the wall instead, upwards.
+            // Into the wall, or along it.
             continue;
         }
         tally.spawned += 1;
