@@ -2,12 +2,34 @@
 //!
 //! The tree is obvhs's; the triangle test is ours and watertight ([`super::triangle`]). Boxes are padded, because
 //! the tree's slab test rounds and its inverse directions are clamped: without the padding a ray can miss a box
-//! whose triangle it hits. Triangles lie in world space: a static bake needs no instance transforms, and a second
+//! whose triangle it hits. All triangles lie in one frame: a static bake needs no instance transforms, and a second
 //! rounding on the way down would break watertightness between neighbours.
 //!
 //! The tree drops every box that a ray leaves within 10⁻⁴ of its origin, a length that knows nothing of the scene: in
 //! metres, light would leave a closed room through its corners. All lengths in here are therefore scaled by a power
-//! of two, which rounds nothing, that makes the scene 2³⁰ units large and the dropped length less than a trillionth of it.
+//! of two, which rounds nothing, that makes the scene 2³⁰ units large. A ray leaves the box of a triangle that it meets
+//! no sooner than the padding lets it, 2⁻²⁰ of that or 10³ units: the dropped length is none.
+//!
+//! # Rays from afar
+//!
+//! The triangle test multiplies three coordinates, and what it and the slab test round grows with the distance of the
+//! ray's origin. So only rays that start within [`NEAR`] of the scene's reach r (its largest coordinate) go to the tree
+//! as they are: no coordinate difference is then above 2.5 r < 2^32.4 units and no product of three above 2⁹⁸. Any other
+//! ray is first moved along its own line to a cube of 1.25 r, in f64 (`accel/far.rs`), where it may be off by 2⁻⁵² of
+//! the distance that it came: less than f32 can tell within the scene up to 2²⁸ reaches away. Farther out nothing
+//! overflows, only that error grows with the distance.
+//!
+//! # Padding
+//!
+//! A box may be missed only by rays that miss its triangle as [`super::triangle`] computes it. With an origin within
+//! 1.5 r, each in u·r, u = 2⁻²⁴:
+//!
+//! - a slab's plane q·e + p (e a power of two, q ≤ 255) comes out as (q·e + (p − o))/d with five roundings, which move
+//!   it by u·(q·e + 2·|p − o| + 2·|q·e + p − o|) ≤ 2 + 4·2.5 = 12;
+//! - direction components below ε = 2⁻²³ are taken for ε: over the longest way, 2.5·√3 r, at most ε·4.4 r = 8.7;
+//! - the triangle test moves a vertex as it sees it by u·(|v − o| + 5·|v − o| + …) ≤ 7·2.5 = 17.5.
+//!
+//! The sum is below 40, or 20 ε·r, by which each box is made larger on every side.
 //!
 //! # Why the eight-way tree
 //!
@@ -26,6 +48,8 @@
 //! Any hit on the hall was not measured for BVH2. Rays of a bake are diffuse, and there the eight-way tree is a third faster on a large scene. BVH2 drops no length, so
 //! that it would need no scaling; its slab test rounds alike and needs the same padding.
 
+mod far;
+
 use super::triangle::{Crossing, ShearedRay, plane_distance};
 use glam::Vec3;
 use obvhs::Boundable;
@@ -36,13 +60,21 @@ use obvhs::cwbvh::builder::build_cwbvh;
 use obvhs::ray::{Ray, RayHit};
 use std::time::Duration;
 
-/// A tree over world-space triangles.
+/// Coordinate up to which a ray's origin is used as it is, in reaches of the scene.
+const NEAR: f32 = 1.5;
+
+/// How much larger boxes are on every side, in ε times the scene's reach.
+const PADDING: f32 = 20.0;
+
+/// A tree over triangles, all in one frame.
 pub(super) struct Accel {
     tree: Option<CwBvh>,
     /// In the tree's order and units: each triangle and the number under which the caller knows it.
     triangles: Vec<([Vec3; 3], u32)>,
     /// The tree's units per metre: a power of two.
     scale: f32,
+    /// Largest coordinate of the scene, in the tree's units.
+    reach: f32,
 }
 
 /// What a ray met.
@@ -68,11 +100,9 @@ impl Accel {
     /// Builds a tree. All vertices must be finite.
     pub(super) fn new(triangles: &[[Vec3; 3]]) -> Self {
         let reach = triangles.iter().flatten().fold(0.0_f32, |reach, vertex| reach.max(vertex.abs().max_element()));
-        // The tree's slab test is off by a few units in the last place of the distance between origin and box, and
-        // takes direction components below ε as ε, so that a ray in the plane of a flat box leaves it after
-        // padding/ε. Four units make that 4·reach, farther than two points of the scene can be apart (2√3·reach).
         let scale = scale_for(reach);
-        let padding = 4.0 * f32::EPSILON * reach * scale;
+        let reach = reach * scale;
+        let padding = PADDING * f32::EPSILON * reach;
         let triangles: Vec<[Vec3; 3]> = triangles.iter().map(|corners| corners.map(|vertex| vertex * scale)).collect();
         let boxes: Vec<Padded> = triangles
             .iter()
@@ -83,16 +113,26 @@ impl Accel {
             })
             .collect();
         if boxes.is_empty() {
-            return Self { tree: None, triangles: Vec::new(), scale };
+            return Self { tree: None, triangles: Vec::new(), scale, reach };
         }
         let mut tree = build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
         let triangles = tree.primitive_indices.iter().map(|&index| (triangles[index as usize], index)).collect();
         tree.primitive_indices = Vec::new();
-        Self { tree: Some(tree), triangles, scale }
+        Self { tree: Some(tree), triangles, scale, reach }
     }
 
     /// The nearest triangle that the ray meets before `t_max`, from either side. The direction is a unit vector.
     pub(super) fn closest(&self, origin: Vec3, direction: Vec3, t_max: f32) -> Option<Hit> {
+        if self.is_far(origin) {
+            let (nearer, passed) = self.come_nearer(origin, direction)?;
+            let hit = self.closest_from_near(nearer, direction, (f64::from(t_max) - passed) as f32)?;
+            return Some(Hit { t: (passed + f64::from(hit.t)) as f32, ..hit });
+        }
+        self.closest_from_near(origin, direction, t_max)
+    }
+
+    #[inline]
+    fn closest_from_near(&self, origin: Vec3, direction: Vec3, t_max: f32) -> Option<Hit> {
         let tree = self.tree.as_ref()?;
         let (origin, t_max) = (origin * self.scale, t_max * self.scale);
         let sheared = ShearedRay::new(origin, direction);
@@ -130,7 +170,17 @@ impl Accel {
     /// Whether `stops` says so of anything that lies on the open segment from `origin` to `target`. Asks for each
     /// triangle once at most, in no order.
     #[inline]
-    pub(super) fn meets(&self, origin: Vec3, target: Vec3, stops: impl FnMut(Hit) -> bool) -> bool {
+    pub(super) fn meets(&self, origin: Vec3, target: Vec3, mut stops: impl FnMut(Hit) -> bool) -> bool {
+        if self.is_far(origin) || self.is_too_far(target) {
+            return self.part_within(origin, target).is_some_and(|(from, to, passed)| {
+                self.meets_between(from, to, |hit| stops(Hit { t: (passed + f64::from(hit.t)) as f32, ..hit }))
+            });
+        }
+        self.meets_between(origin, target, stops)
+    }
+
+    #[inline]
+    fn meets_between(&self, origin: Vec3, target: Vec3, stops: impl FnMut(Hit) -> bool) -> bool {
         let (origin, target) = (origin * self.scale, target * self.scale);
         let offset = target - origin;
         let distance = offset.length();
@@ -144,7 +194,14 @@ impl Accel {
 
     /// The same for a ray without an end, in a unit direction.
     #[inline]
-    pub(super) fn meets_towards(&self, origin: Vec3, direction: Vec3, stops: impl FnMut(Hit) -> bool) -> bool {
+    pub(super) fn meets_towards(&self, origin: Vec3, direction: Vec3, mut stops: impl FnMut(Hit) -> bool) -> bool {
+        if self.is_far(origin) {
+            return self.come_nearer(origin, direction).is_some_and(|(nearer, passed)| {
+                self.search(nearer * self.scale, direction, None, |hit| {
+                    stops(Hit { t: (passed + f64::from(hit.t)) as f32, ..hit })
+                })
+            });
+        }
         self.search(origin * self.scale, direction, None, stops)
     }
 

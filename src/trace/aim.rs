@@ -19,6 +19,7 @@ impl Tracer {
     /// unit normal. `choice` in [0, 1) says which, `u` in [0, 1)² where on it. `None` if that one does not shine here.
     /// What lies between is not asked.
     pub fn aim(&self, position: Vec3, normal: Vec3, choice: f32, u: Vec2) -> Option<Aim> {
+        let position = self.traced_from_world.point(position);
         let ctx = LightContext { position, normal: Some(normal) };
         let sample = self.lights.sample(&ctx, u, choice)?;
         Some(Aim { direction: sample.wi, pdf: sample.pdf })

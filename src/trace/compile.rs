@@ -1,5 +1,5 @@
-//! From a scene to a [`Tracer`]: faults left out, the rest in world space and in an order of its own; and of that
-//! only what the plan asks for.
+//! From a scene to a [`Tracer`]: faults left out, the rest in the traced frame and in an order of its own; and of
+//! that only what the plan asks for.
 
 mod sound;
 mod world;
@@ -69,6 +69,7 @@ impl Compiled {
         for index in instances {
             world.add_instance(scene, index, sound.lightmaps[index]);
         }
+        world.move_to_traced_frame();
         world.add_emitters();
         for light in lights {
             if effects.has(effect_of(light)) {

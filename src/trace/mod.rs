@@ -22,6 +22,7 @@ mod tangents;
 #[cfg(test)]
 mod testing;
 mod texture;
+mod traced;
 mod tracer;
 mod transport;
 mod triangle;

@@ -38,8 +38,8 @@ impl Tracer {
         with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, rays).receive(start))
     }
 
-    /// Radiance that arrives against `direction` at `origin`, along a camera's ray [cd/m²]. Lights that are no
-    /// surfaces are not seen, as in Bevy.
+    /// Radiance that arrives against `direction` at `origin`, a point of the world, along a camera's ray [cd/m²]. Lights
+    /// that are no surfaces are not seen, as in Bevy.
     pub(crate) fn camera_radiance(
         &self,
         origin: Vec3,
@@ -48,7 +48,7 @@ impl Tracer {
         transport: &Transport,
         rays: &mut u64,
     ) -> Vec3 {
-        let ray = Ray::of_camera(origin, direction);
+        let ray = Ray::of_camera(self.traced_from_world.point(origin), direction);
         with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, rays).look_along(ray))
     }
 }

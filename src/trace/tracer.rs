@@ -10,6 +10,7 @@ use super::material::Surface;
 use super::shade::Place;
 use super::surface::TriangleShape;
 use super::texture::Decoded;
+use super::traced::TracedFromWorld;
 use super::transport::Transport;
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
@@ -22,6 +23,8 @@ pub(super) const NO_TRIANGLE: u32 = u32::MAX;
 
 /// A scene compiled for rays. Independent of the order in which the scene lists its parts.
 pub struct Tracer {
+    /// All below lies in the traced frame.
+    pub(super) traced_from_world: TracedFromWorld,
     pub(super) accel: Arc<Accel>,
     pub(super) triangles: Vec<TriangleShape>,
     /// Per triangle, index into `surfaces`.
@@ -70,14 +73,16 @@ pub(crate) struct Receiver {
 }
 
 impl Tracer {
-    /// The nearest surface that a ray from `origin` [m] in the unit `direction` meets, from either side.
+    /// The nearest surface that a ray from `origin` [m] in the unit `direction` meets, from either side. The origin may
+    /// be any distance away; what the ray meets is then as sure as an f64 along its way, 2⁻⁵² of that distance.
     pub fn closest_hit(&self, origin: Vec3, direction: Vec3) -> Option<RayHit> {
-        let hit = self.accel.closest(origin, direction, f32::INFINITY)?;
+        let hit = self.accel.closest(self.traced_from_world.point(origin), direction, f32::INFINITY)?;
         Some(RayHit { distance: hit.t, normal: self.normal(hit.triangle) })
     }
 
     /// Whether no surface lies between two points [m].
     pub fn is_visible(&self, from: Vec3, to: Vec3) -> bool {
+        let [from, to] = [from, to].map(|point| self.traced_from_world.point(point));
         !self.accel.is_blocked(from, to)
     }
 
@@ -120,7 +125,8 @@ impl Tracer {
         self.albedo::<TEXTURED>(surface, Place { triangle, barycentric })
     }
 
-    /// World vertices of a triangle, counter-clockwise seen from its front [m].
+    /// Vertices of a triangle in the traced frame, which is the world but for its origin; counter-clockwise seen from
+    /// its front [m].
     pub(crate) fn vertices(&self, triangle: u32) -> [Vec3; 3] {
         self.triangles[triangle as usize].vertices
     }
@@ -149,7 +155,7 @@ impl Tracer {
     /// Memory that it holds, as far as it grows with the scene [bytes].
     pub(crate) fn memory_bytes(&self) -> u64 {
         // A triangle with its share of the tree (measured: about 60 bytes of nodes each).
-        let triangles = self.triangles.len() as u64 * 160;
+        let triangles = self.triangles.len() as u64 * 172;
         let textures: u64 = self.textures.iter().flatten().map(Decoded::memory_bytes).sum();
         triangles + textures + self.attributes.memory_bytes()
     }

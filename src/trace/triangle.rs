@@ -5,10 +5,24 @@
 //! products for it, so a ray at the edge hits at least one of them. Where an edge function is exactly zero it is
 //! evaluated again in f64, in which its products are exact.
 //!
-//! The distance comes with a bound on its own error (Pharr, Jakob and Humphreys 2023, § 6.8.4, whose derivation
-//! this follows). A hit nearer to either end of the ray than the bound may be the surface that the ray left or the
-//! source that it goes to; which side of the triangle's plane that end lies on then decides, in f64. To drop such
-//! hits instead, as is often done, lets light out of closed corners: a furnace of albedo 0.99 lost 0.17 % by it.
+//! The distance comes with a bound on its own error (Pharr, Jakob and Humphreys 2023, § 6.8.4). With u = 2⁻²⁴,
+//! γₙ = n·u/(1 − n·u) (Higham 2002, lemma 3.1) and X, Y, Z the largest of the sheared coordinates:
+//!
+//! - a sheared x, (x − o) − s·(z − o), takes one rounding of x − o, and of s·z two in s, one in z − o, one in the product;
+//!   one more for the difference of both: off by γ₅·(X + Z), a sheared y likewise, a z scaled by 1/d by γ₃·Z;
+//! - an edge function x·y' − x'·y then by E = 2·(γ₂·X·Y + γ₅·(Y + Z)·X + γ₅·(X + Z)·Y);
+//! - the distance t = Σ eᵢ·zᵢ / Σ eᵢ: let êᵢ = eᵢ + Δᵢ be what was computed. As Σ eᵢ·(zᵢ − t) = 0,
+//!   t̂·Σ êᵢ = t·Σ eᵢ + Σ Δᵢ·zᵢ. So if the plane lies behind the ray's origin, t < 0, then t̂ is at most
+//!   3·(E·Z + γ₃·Z·max|e| + γ₃·max|e|·Z)/|Σ êᵢ|, the errors of z and of the sum itself added: a larger t̂ is a hit.
+//!
+//! The last step asks that Σ eᵢ and Σ êᵢ have the same sign. They differ in it only for triangles that the ray sees
+//! edge-on to within rounding; such a triangle contains the ray only if the ray's origin is no farther from its plane
+//! than sheared vertices are off, and no origin that was moved by [`super::surface`] is. That these go right is tested,
+//! over 10⁸ rays from triangles of all shapes.
+//!
+//! A hit nearer to either end of the ray than the bound may be the surface that the ray left or the source that it goes
+//! to; which side of the triangle's plane that end lies on then decides, in f64. To drop such hits instead, as is often
+//! done, lets light out of closed corners: a furnace of albedo 0.99 lost 0.17 % by it.
 
 use glam::Vec3;
 

@@ -13,6 +13,7 @@ use crate::trace::sampler::{Dimensions, Sampler, Sobol};
 use crate::trace::shade::Place;
 use crate::trace::surface::{Placement, TriangleShape};
 use crate::trace::texture::Decoded;
+use crate::trace::traced::TracedFromWorld;
 use crate::trace::tracer::{NO_TRIANGLE, NOT_EMISSIVE, Receiver, Tracer};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
@@ -49,6 +50,7 @@ impl World {
         }
         let kernel = kernel_for(effects);
         let tracer = Tracer {
+            traced_from_world: TracedFromWorld::default(),
             accel: Arc::new(Accel::new(&[])),
             triangles: Vec::new(),
             surface_of: Vec::new(),
@@ -95,6 +97,17 @@ impl World {
         }
     }
 
+    /// Moves all triangles from the world to the frame in which they are traced, once all instances are there.
+    pub(super) fn move_to_traced_frame(&mut self) {
+        let tracer = &mut self.tracer;
+        let vertices = tracer.triangles.iter().flat_map(|triangle| triangle.vertices);
+        let traced_from_world = TracedFromWorld::around(vertices);
+        for triangle in &mut tracer.triangles {
+            *triangle = triangle.moved(traced_from_world);
+        }
+        tracer.traced_from_world = traced_from_world;
+    }
+
     /// Makes every glowing triangle a source, once all instances are there; two in a row that make a plain rectangle
     /// become one.
     pub(super) fn add_emitters(&mut self) {
@@ -129,7 +142,7 @@ impl World {
     }
 
     pub(super) fn add_light(&mut self, light: &Light) {
-        self.sources.add_light(light);
+        self.sources.add_light(light, self.tracer.traced_from_world);
         if let Light::Rect(_) = light {
             self.shapes += 1;
         }
@@ -203,7 +216,8 @@ fn rectangle_of(first: &TriangleShape, second: &TriangleShape) -> Option<(Vec3, 
     let origin = first.vertices[corner];
     let [u, v] = [1, 2].map(|step| first.vertices[(corner + step) % 3] - origin);
     let size = u.length().min(v.length());
-    // Off by as much as f32 vertices must be; a hundredth of that would still show in no image.
+    // Off by as much as points on it are; what the world's f32 has bent by more is no rectangle, and to aim at one
+    // would miss what rays meet.
     let slack = 16.0 * (first.error + second.error).max_element() + 1e-6 * size;
     let is_parallelogram = (origin + u + v - opposite).length() <= slack;
     let is_right_angled = u.dot(v).abs() <= slack * size;

@@ -6,6 +6,7 @@ use super::environment::Environment;
 use super::lights::{Lights, Parts};
 use crate::scene::{EnvironmentMap, Light, PointLight, RectLight, SpotLight};
 use crate::trace::surface::{Placement, position_error};
+use crate::trace::traced::TracedFromWorld;
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -22,11 +23,11 @@ impl Sources {
     }
 
     /// Adds a light that is no surface. One that gives no light is left out.
-    pub(in crate::trace) fn add_light(&mut self, light: &Light) {
+    pub(in crate::trace) fn add_light(&mut self, light: &Light, traced_from_world: TracedFromWorld) {
         match light {
-            Light::Rect(light) => self.add_free(rectangle(light)),
-            Light::Point(light) => self.add_free(bulb(light, None)),
-            Light::Spot(light) => self.add_free(bulb(&light.bulb, Some(cone(light)))),
+            Light::Rect(light) => self.add_free(rectangle(light, traced_from_world)),
+            Light::Point(light) => self.add_free(bulb(light, None, traced_from_world)),
+            Light::Spot(light) => self.add_free(bulb(&light.bulb, Some(cone(light)), traced_from_world)),
             Light::Directional(light) => {
                 if light.illuminance != Vec3::ZERO {
                     self.0.distant.push(DistantDisc::new(light));
@@ -57,8 +58,8 @@ impl Sources {
     }
 }
 
-fn rectangle(light: &RectLight) -> Emitter {
-    let placement = Placement::new(&light.world_from_local);
+fn rectangle(light: &RectLight, traced_from_world: TracedFromWorld) -> Emitter {
+    let placement = Placement::traced(&light.world_from_local, traced_from_world);
     let (x, y) = (0.5 * light.width, 0.5 * light.height);
     let [corner, right, top] =
         [Vec3::new(-x, -y, 0.0), Vec3::new(x, -y, 0.0), Vec3::new(-x, y, 0.0)].map(|p| placement.position(p));
@@ -79,8 +80,9 @@ fn rectangle(light: &RectLight) -> Emitter {
     }
 }
 
-fn bulb(light: &PointLight, cone: Option<Cone>) -> Emitter {
-    let PointLight { position: centre, radius, .. } = *light;
+fn bulb(light: &PointLight, cone: Option<Cone>, traced_from_world: TracedFromWorld) -> Emitter {
+    let PointLight { position, radius, .. } = *light;
+    let centre = traced_from_world.point(position);
     // So small that its radiance is no number: the same light comes from a point.
     let is_point = !(light.intensity / (PI * radius * radius)).is_finite();
     Emitter {

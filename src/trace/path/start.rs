@@ -4,7 +4,7 @@ use crate::trace::surface::TriangleShape;
 use crate::trace::tracer::Tracer;
 use glam::Vec3;
 
-/// Where paths start, and which way it faces.
+/// Where paths start, in the traced frame, and which way it faces.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PathStart {
     /// The point itself [m].
@@ -49,9 +49,12 @@ impl Tracer {
     }
 
     /// A start of paths at a point of the world. Within 1e-5 of the scene's extent from a surface, on the side that
-    /// `normal` points to, the point counts as lying on it.
-    pub(crate) fn start_at(&self, position: Vec3, normal: Vec3) -> PathStart {
-        let reach = 1e-5 * self.extent;
+    /// `normal` points to, the point counts as lying on it; and so it does if only the rounding of its own coordinates
+    /// to f32 keeps it off, far from the world's origin.
+    pub(crate) fn start_at(&self, position_world: Vec3, normal: Vec3) -> PathStart {
+        let rounding = self.traced_from_world.rounding(position_world).dot(normal.abs());
+        let reach = 1e-5 * self.extent + rounding;
+        let position = self.traced_from_world.point(position_world);
         let above = position + normal * reach;
         match self.accel.closest(above, -normal, 2.0 * reach) {
             Some(hit) => self.start_on_triangle(hit.triangle, hit.barycentric, normal),

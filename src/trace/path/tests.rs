@@ -87,7 +87,7 @@ fn second_opinion(tracer: &Tracer, start: &PathStart, sampler: &Sobol, fault: Fa
         if let Some(sample) = tracer.lights.sample(&ctx, Vec2::new(u, v), choice) {
             let (cosine, pdf) = (vertex.normal.dot(sample.wi), sample.pdf.expect("the walls have a size"));
             let End::At(target) = sample.end else { unreachable!("the walls are somewhere") };
-            if cosine > 0.0 && tracer.is_visible(vertex.origin, target) {
+            if cosine > 0.0 && !tracer.accel.is_blocked(vertex.origin, target) {
                 let value = if fault == Fault::LightPdf { sample.value / 1.05 } else { sample.value };
                 let scattered = albedo * FRAC_1_PI * if fault == Fault::MissingCosine { 1.0 } else { cosine };
                 radiance += throughput * scattered * value * weigh(pdf, cosine * FRAC_1_PI);

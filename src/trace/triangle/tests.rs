@@ -9,6 +9,26 @@ fn vector(random: &mut Random) -> Vec3 {
     2.0 * Vec3::new(random.unit(), random.unit(), random.unit()) - Vec3::ONE
 }
 
+/// Needles so narrow that all three edge functions round to zero in f32 are met where they are, and only there.
+#[test]
+fn needles_that_f32_cannot_resolve_are_met() {
+    let mut random = Random::new(3);
+    let (mut inside, mut unresolved) = (0, 0);
+    for _ in 0..200_000 {
+        let (along, aside) = (vector(&mut random), 1e-7 * vector(&mut random));
+        let [a, b, c] = [-along, along + aside, along - of_any_size(&mut random, -2.0, 0.0) * aside];
+        let triangle = [a, b, c].map(|vertex| vertex.with_z(1.0));
+        let edge = |p: Vec3, q: Vec3| f64::from(p.x) * f64::from(q.y) - f64::from(p.y) * f64::from(q.x);
+        let edges = [edge(c, b), edge(a, c), edge(b, a)];
+        let is_inside = edges.iter().all(|&edge| edge >= 0.0) || edges.iter().all(|&edge| edge <= 0.0);
+        let is_met = ShearedRay::new(Vec3::ZERO, Vec3::Z).cross(&triangle).is_some();
+        assert_eq!(is_met, is_inside && edges.iter().sum::<f64>() != 0.0, "{triangle:?} {edges:?}");
+        inside += u32::from(is_inside);
+        unresolved += u32::from([(c, b), (a, c), (b, a)].iter().all(|(p, q)| p.x * q.y - p.y * q.x == 0.0));
+    }
+    assert!(inside > 1000 && unresolved > 100, "{inside} {unresolved}");
+}
+
 /// The stated error of the distance holds against the plane's distance in f64, and is not vacuously large.
 #[test]
 fn the_stated_error_holds() {

@@ -25,14 +25,19 @@ impl Segment {
 
 /// The distance of the nearest hit, by testing all; `None` for none.
 fn nearest_of_all(accel: &Accel, segment: &Segment) -> Option<f32> {
-    let (origin, direction) = (segment.from * accel.scale, segment.direction());
+    let direction = segment.direction();
+    let (from, passed) = match accel.is_far(segment.from) {
+        true => accel.come_nearer(segment.from, direction)?,
+        false => (segment.from, 0.0),
+    };
+    let origin = from * accel.scale;
     let ray = ShearedRay::new(origin, direction);
     let start = End { position: origin, inwards: direction };
     let hits = accel.triangles.iter().filter_map(|(triangle, _)| {
         let crossing = ray.cross(triangle)?;
         start.is_behind(crossing.t, crossing.t_error, triangle).then_some(crossing.t)
     });
-    hits.min_by(f32::total_cmp).map(|t| t / accel.scale)
+    hits.min_by(f32::total_cmp).map(|t| (passed + f64::from(t / accel.scale)) as f32)
 }
 
 /// How a line crosses a triangle in f64 (Möller and Trumbore 1997): distance, and the least of the three weights.
@@ -201,4 +206,17 @@ fn nothing_beyond_the_end() {
     assert!(!accel.is_blocked(Vec3::ZERO, Vec3::new(0.0, 0.0, 1.999)));
     assert!(accel.is_blocked(Vec3::ZERO, Vec3::new(0.0, 0.0, 2.001)));
     assert!(!accel.is_blocked(Vec3::ZERO, Vec3::ZERO));
+}
+
+/// A segment that ends one step of f32 behind a wall is blocked, one that ends a step before it is not.
+#[test]
+fn an_end_next_to_a_wall() {
+    let accel = Accel::new(&[[Vec3::new(-9.0, -9.0, 0.3), Vec3::new(9.0, -9.0, 0.3), Vec3::new(0.0, 9.0, 0.3)]]);
+    let mut random = Random::new(7);
+    for _ in 0..20_000 {
+        let from = point(&mut random).with_z(0.4 + random.unit());
+        let to = point(&mut random);
+        assert!(accel.is_blocked(from, to.with_z(0.3_f32.next_down())), "{from} {to}");
+        assert!(!accel.is_blocked(from, to.with_z(0.3_f32.next_up())), "{from} {to}");
+    }
 }

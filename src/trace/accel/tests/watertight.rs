@@ -125,15 +125,18 @@ fn no_walk_leaves_a_cube() {
     assert_eq!(escapes(&Shape::icosphere(3).tracer(Affine3A::IDENTITY), 200_000, 1), 0, "sphere");
 }
 
-/// Far from the origin a room is only so many f32 wide, and a point on one wall may round to beyond the next. The
-/// chance of that is the share of the room that one rounding takes up, and no more is lost.
+/// Far from the origin a room is only so many f32 wide, but rays are traced in a frame of their own: no more is lost
+/// there than at home. Traced in the world's own numbers, this walk lost 613 of its 200 000 rays.
 #[test]
-fn far_away_a_walk_leaves_a_cube_no_more_often_than_rounding_makes_it() {
-    let (distance, size, bounces) = (1000.0, 0.01, 200_000);
-    let world_from_local = Affine3A::from_translation(Vec3::splat(distance)) * Affine3A::from_scale(Vec3::splat(size));
-    let step = distance.next_up() - distance;
-    let found = f64::from(escapes(&Shape::cube().tracer(world_from_local), bounces, 1)) / f64::from(bounces);
-    assert!(found < f64::from(step / size), "{found} against {}", step / size);
+fn no_walk_leaves_a_cube_far_away() {
+    for (name, place) in [
+        ("along all axes", Vec3::splat(1000.0)),
+        ("along one", Vec3::new(0.0, -1000.0, 0.0)),
+        ("along two", Vec3::new(1000.0, 0.3, -1000.0)),
+    ] {
+        let world_from_local = Affine3A::from_translation(place) * Affine3A::from_scale(Vec3::splat(0.01));
+        assert_eq!(escapes(&Shape::cube().tracer(world_from_local), 200_000, 1), 0, "{name}");
+    }
 }
 
 /// The cube with its floor in strips around a square of side 0.02 at `corner`, and that square, whole or halved.
