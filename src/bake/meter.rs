@@ -14,8 +14,8 @@ use std::time::Instant;
 /// Where to hold the meter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeterPoint {
-    /// The point [m]. Within 1e-5 of the scene's extent from a surface, on the side of `normal`, it counts as lying
-    /// on it.
+    /// The point [m]. Within 1e-5 of the scene's extent from a surface it counts as lying on the nearest one, on the
+    /// side of `normal`; and so it does far from the world's origin where only its rounding to f32 keeps it off.
     pub position: Vec3,
     /// The direction that the meter faces; its length does not matter.
     pub normal: Vec3,

@@ -48,15 +48,26 @@ impl Tracer {
         PathStart::new(shape, shape.position(barycentric), normal)
     }
 
-    /// A start of paths at a point of the world. Within 1e-5 of the scene's extent from a surface, on the side that
-    /// `normal` points to, the point counts as lying on it; and so it does if only the rounding of its own coordinates
-    /// to f32 keeps it off, far from the world's origin.
+    /// A start of paths at a point of the world. Within 1e-5 of the scene's extent from a surface the point counts as
+    /// lying on the nearest one; and so it does if only the rounding of its own coordinates to f32 keeps it off, far
+    /// from the world's origin.
     pub(crate) fn start_at(&self, position_world: Vec3, normal: Vec3) -> PathStart {
-        let rounding = self.traced_from_world.rounding(position_world).dot(normal.abs());
-        let reach = 1e-5 * self.extent + rounding;
         let position = self.traced_from_world.point(position_world);
-        let above = position + normal * reach;
-        match self.accel.closest(above, -normal, 2.0 * reach) {
+        let rounding = self.traced_from_world.rounding(position_world).dot(normal.abs());
+        // Never nothing, so that a point exactly on a surface is looked at from beside it.
+        let fine = rounding + 2.0 * f32::EPSILON * position.abs().dot(normal.abs()).max(1e-3 * self.extent);
+        let coarse = rounding + 1e-5 * self.extent;
+        let meet = |from: Vec3, direction: Vec3, reach: f32| self.accel.closest(from, direction, reach);
+        // Within rounding no side is above or below. Farther off, the other plate of a narrow gap may be in reach too.
+        let within_rounding = meet(position + normal * fine, -normal, 2.0 * fine);
+        let nearest = within_rounding.or_else(|| {
+            let [below, above] = [-normal, normal].map(|direction| meet(position, direction, coarse));
+            match (below, above) {
+                (Some(below), Some(above)) => Some(if above.t < below.t { above } else { below }),
+                (below, above) => below.or(above),
+            }
+        });
+        match nearest {
             Some(hit) => self.start_on_triangle(hit.triangle, hit.barycentric, normal),
             None => PathStart::free(position, normal),
         }

@@ -178,3 +178,24 @@ fn roulette_loses_nothing() {
     let dim = survival_probability(0.01);
     assert!((survival_probability(0.02) - 2.0 * dim).abs() < 1e-6);
 }
+
+/// Of two plates in reach of a meter, the one that it lies on is the nearest, however narrow the gap.
+#[test]
+fn a_meter_in_a_narrow_gap_lies_on_its_own_plate() {
+    let plate = |height: f32| {
+        let corners = [Vec3::new(-1.0, height, -1.0), Vec3::new(-1.0, height, 1.0), Vec3::new(1.0, height, 1.0)];
+        Shape { positions: corners.to_vec(), triangles: vec![[0, 1, 2]] }
+    };
+    for gap in [2e-5, 1e-5, 1e-6] {
+        let (low, high) = (plate(0.0), plate(gap));
+        let both = Shape { positions: [low.positions, high.positions].concat(), triangles: vec![[0, 1, 2], [3, 4, 5]] };
+        let tracer = both.tracer(Affine3A::IDENTITY);
+        for (off, plate) in [(0.0, 0.0), (0.1 * gap, 0.0), (-1e-7, 0.0), (0.9 * gap, gap), (gap, gap)] {
+            for side in [1.0, -1.0] {
+                let start = tracer.start_at(Vec3::new(-0.5, off, 0.3), side * Vec3::Y);
+                let found = start.origin().y;
+                assert!((found - plate).abs() < 0.05 * gap, "{off} of {gap}: on {found}");
+            }
+        }
+    }
+}
