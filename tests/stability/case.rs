@@ -8,6 +8,8 @@ pub type Verdict = Result<(), String>;
 /// What cases have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
+    /// Where rays start, what they meet.
+    Rays,
     /// Size and place of the world.
     Place,
     /// Where a receiver is, seen from a light.
@@ -25,12 +27,21 @@ pub enum Group {
 }
 
 impl Group {
-    pub const ALL: [Self; 7] =
-        [Self::Place, Self::Distance, Self::Triangles, Self::Energy, Self::Lobes, Self::Images, Self::Samples];
+    pub const ALL: [Self; 8] = [
+        Self::Rays,
+        Self::Place,
+        Self::Distance,
+        Self::Triangles,
+        Self::Energy,
+        Self::Lobes,
+        Self::Images,
+        Self::Samples,
+    ];
 
     /// As it stands in a test's name.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Rays => "rays",
             Self::Place => "place",
             Self::Distance => "distance",
             Self::Triangles => "triangles",
@@ -44,6 +55,7 @@ impl Group {
     /// As a heading.
     pub fn title(self) -> &'static str {
         match self {
+            Self::Rays => "Rays and surfaces",
             Self::Place => "Scale and place",
             Self::Distance => "Distance and angle",
             Self::Triangles => "Triangles",

@@ -5,6 +5,7 @@ mod energy;
 mod images;
 mod lobes;
 mod place;
+mod rays;
 mod samples;
 mod triangles;
 
@@ -19,6 +20,7 @@ pub fn all() -> Vec<(Group, &'static Case)> {
 /// The cases of a group.
 pub fn of(group: Group) -> &'static [Case] {
     match group {
+        Group::Rays => rays::CASES,
         Group::Place => place::CASES,
         Group::Distance => distance::CASES,
         Group::Triangles => triangles::CASES,

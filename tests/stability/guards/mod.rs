@@ -2,6 +2,7 @@
 
 pub mod bake;
 pub mod bsdf;
+pub mod crossings;
 pub mod light;
 pub mod output;
 pub mod path;
