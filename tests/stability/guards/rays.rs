@@ -1,4 +1,4 @@
-//! Guards of rays: where they start, what they meet.
+//! Guards of rays: where they start, what they meet, where they end.
 
 use crate::guard::{Edit, Guard};
 
@@ -22,4 +22,44 @@ pub static ORIGIN_MOVE: Guard = Guard {
         text: "let distance = self.error.dot(normal.abs());",
         instead: "let distance = 0.0; if true { return position; }",
     }],
+};
+
+pub static NO_CONSTANT: Guard = Guard {
+    name: "no constant ray bias",
+    does: "that distance is a bound on an error, in units in the last place of the triangle's coordinates, and no \
+           length in metres; taken out, it is Fyrox's 10 mm",
+    edits: &[Edit {
+        file: "src/trace/surface.rs",
+        text: "let distance = self.error.dot(normal.abs());",
+        instead: "let distance = 0.01;",
+    }],
+};
+
+pub static SHADOW_LENGTH: Guard = Guard {
+    name: "shadow rays go all the way",
+    does: "a shadow ray has its lamp's own point as its end, and what lies near that end is judged by the side of the \
+           plane, in f64; taken out, it stops a ten-thousandth short (pbrt's ShadowEpsilon)",
+    edits: &[Edit {
+        file: "src/trace/accel.rs",
+        text: "let distance = offset.length();",
+        instead: "let distance = offset.length() * (1.0 - 1e-4);",
+    }],
+};
+
+pub static NO_LEAST_AREA: Guard = Guard {
+    name: "no triangle is too small",
+    does: "a triangle is missed only if its area, seen along the ray, is exactly 0; taken out, twice that area below \
+           1e-5 m² is a miss, as in Godot's lightmapper",
+    edits: &[
+        Edit {
+            file: "src/trace/accel.rs",
+            text: "2.0_f32.powi((30 - exponent).clamp(-90, 120))",
+            instead: "2.0_f32.powi(0 * exponent)",
+        },
+        Edit {
+            file: "src/trace/triangle.rs",
+            text: "if determinant == 0.0 {",
+            instead: "if determinant.abs() < 1e-5 {",
+        },
+    ],
 };
