@@ -54,13 +54,14 @@ pub static SOLID_ANGLE_EXACT: Guard = Guard {
 
 pub static LAMP_END: Guard = Guard {
     name: "shadow rays end before their lamp",
-    does: "a shadow ray ends off its lamp by the bound on the error of that point, and a lamp lies off its own plane \
-           by as much, so that neither a lamp's own triangles nor the ceiling that it is set into block it",
+    does: "the end of a shadow ray is brought back to its lamp's plane in f64 and then moved off by the bound on the \
+           lamp's own error; and a lamp lies off its own plane by as much, so that neither a lamp's own triangles nor \
+           the ceiling that it is set into block it",
     edits: &[
         Edit {
             file: "src/trace/light/emitter.rs",
-            text: "towards_receiver * self.error.dot(self.normal.abs());",
-            instead: "towards_receiver * 0.0;",
+            text: "let target = self.end_before(receiver, offset, towards_receiver);",
+            instead: "let target = receiver + offset + towards_receiver * self.error.dot(self.normal.abs());",
         },
         Edit {
             file: "src/trace/light/compile.rs",

@@ -63,3 +63,16 @@ pub static NO_LEAST_AREA: Guard = Guard {
         },
     ],
 };
+
+pub static WATERTIGHT: Guard = Guard {
+    name: "edges belong to both",
+    does: "a ray misses a triangle only if its three edge functions have both signs; neighbours compute that of their \
+           common edge from the same products (Woop, Benthin and Wald 2013), so that none passes between; taken out, \
+           what is within 1e-5 of an edge is a miss",
+    edits: &[Edit {
+        file: "src/trace/triangle.rs",
+        text: "if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {",
+        instead: "if u.abs().min(v.abs()).min(w.abs()) < 1e-5 * (u + v + w).abs() \
+                  || (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {",
+    }],
+};
