@@ -311,8 +311,7 @@ fn bake_of(scene: &Scene, density: f32) -> Result<Lightmap, String> {
 /// How many texels there are, and the mean of red over them [cd/m²].
 fn texels(lightmap: &Lightmap) -> (usize, f64) {
     let texels = lightmap.pages.iter().flat_map(|page| page.raw.iter().zip(&page.coverage));
-    let texels: Vec<f64> =
-        texels.filter(|(_, coverage)| **coverage > 0.0).map(|(raw, _)| f64::from(raw.x)).collect();
+    let texels: Vec<f64> = texels.filter(|(_, coverage)| **coverage > 0.0).map(|(raw, _)| f64::from(raw.x)).collect();
     (texels.len(), texels.iter().sum::<f64>() / texels.len() as f64)
 }
 

@@ -17,11 +17,7 @@ pub static VALIDATED: Guard = Guard {
             text: "if !is_invertible(&instance.world_from_local) {",
             instead: "if false {",
         },
-        Edit {
-            file: "src/scene/validate.rs",
-            text: "kinds.extend(mesh.uv1_fault());",
-            instead: "",
-        },
+        Edit { file: "src/scene/validate.rs", text: "kinds.extend(mesh.uv1_fault());", instead: "" },
     ],
 };
 

@@ -2,7 +2,7 @@
 //! place. Nowhere NaN, and what is claimed still sums to one.
 
 use super::sky::disc;
-use super::{along, lights, source};
+use super::{along, lights, source, target};
 use crate::math::testing::Random;
 use crate::trace::light::emitter::Cone;
 use crate::trace::light::lights::Parts;
@@ -120,5 +120,30 @@ fn suns_at_the_horizon() {
     for diameter in [0.0, 1e-7, 2.1e-5, 0.0093, 3.0, std::f32::consts::PI] {
         let sun = Lights::new(Parts { distant: vec![disc(diameter), disc(0.0)], ..Parts::default() });
         assert!(interrogate(&sun, Vec3::ZERO) > 50, "{diameter}");
+    }
+}
+
+/// The end of a shadow ray lies before a flat source, on the receiver's side and by its own error at most, however far
+/// away the receiver is.
+#[test]
+fn shadow_rays_end_before_a_far_source() {
+    let mut random = Random::new(5);
+    for reach in [1.0_f32, 1e2, 1e4, 1e6] {
+        for _ in 0..300 {
+            let normal = random.direction();
+            let u = normal.any_orthonormal_vector();
+            let edges = [u, normal.cross(u)];
+            let rectangle = EmitterShape::Rectangle { corner: Vec3::ZERO, edges };
+            let triangle = EmitterShape::Triangle { vertices: [Vec3::ZERO, edges[0], edges[1]] };
+            for shape in [rectangle, triangle] {
+                let emitter = Emitter { normal, error: Vec3::splat(2e-6), ..source(shape, true) };
+                let receiver = reach * random.direction();
+                let Some(sample) = emitter.sample(receiver, random.square()) else { continue };
+                let side = if normal.dot(receiver) > 0.0 { 1.0 } else { -1.0 };
+                let height = f64::from(side) * normal.as_dvec3().dot(target(sample.end).as_dvec3());
+                let error = f64::from(emitter.error.dot(normal.abs()));
+                assert!(height > 0.5 * error && height < 1.5 * error, "{height} of {error} from {reach} m");
+            }
+        }
     }
 }
