@@ -6,7 +6,7 @@ use super::environment::Environment;
 use super::lights::{Lights, Parts};
 use crate::scene::{EnvironmentMap, Light, PointLight, RectLight, SpotLight};
 use crate::trace::surface::{Placement, position_error};
-use glam::{Vec3, Vec3A};
+use glam::Vec3;
 use std::f32::consts::PI;
 
 /// Sources as they come together. Their order is that in which they are added, and must not depend on how the scene is
@@ -62,9 +62,7 @@ fn rectangle(light: &RectLight) -> Emitter {
     let (x, y) = (0.5 * light.width, 0.5 * light.height);
     let corner = placement.position(Vec3::new(-x, -y, 0.0));
     // Not as differences of corners, which are rounded where they stand: far away a lamp would lose its size.
-    let matrix = &light.world_from_local.matrix3;
-    let edge = |axis: Vec3A, length: f32| (Vec3::from(axis).as_dvec3() * f64::from(length)).as_vec3();
-    let edges = [edge(matrix.x_axis, light.width), edge(matrix.y_axis, light.height)];
+    let edges = [light.width * Vec3::X, light.height * Vec3::Y].map(|e| light.world_from_local.transform_vector3(e));
     let normal = placement.normal(Vec3::NEG_Z);
     let error = position_error([corner, corner + edges[0], corner + edges[1], corner + edges[0] + edges[1]]);
     // A lamp set flush into a ceiling must lie before it, not half behind it by rounding.

@@ -42,7 +42,7 @@ pub static DIRECTIONS: Guard = Guard {
             text: "(c - a).try_normalize()?.as_vec3();",
             instead: "(c - a).normalize().as_vec3();",
         },
-        Edit { file: "src/trace/surface.rs", text: "normal.is_finite().then_some(", instead: "true.then_some(" },
+        Edit { file: "src/trace/surface.rs", text: "normal.is_finite().then", instead: "true.then" },
         Edit {
             file: "src/bake/texel.rs",
             text: "smooth.try_normalize().unwrap_or(flat);",
