@@ -6,7 +6,7 @@ use crate::common::scenes::{SceneBuilder, furnace, glowing, grey};
 use crate::guards::rays::{NO_CONSTANT, NO_LEAST_AREA, ORIGIN_MOVE, WATERTIGHT};
 use crate::guards::scene::{DIRECTIONS, FRAMES, RELATIVE_DETERMINANT, SORTED, VALIDATED};
 use crate::judge::{all_read, baked, ensure, is_refused, light_at, mean_reads, reads};
-use crate::worlds::{askew, bulb, in_the_room, points_under, rectangle, room, sun, under};
+use crate::worlds::{askew, bulb, in_the_room, level_room, points_under, rectangle, room, sun, under};
 use bevy_kiln::artefact::StableId;
 use bevy_kiln::bake::{BakeSettings, MeterPoint, MeterReading};
 use bevy_kiln::math::corner_parallel_rectangle;
@@ -53,9 +53,9 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "dark_behind_a_t_junction",
-        hard: "points 1 mm from a T-junction and from the edges of a black box, under a sky",
+        hard: "a black box that leans (its walls meet the floor at 40°), with points 1 mm from that edge and from where a cut of the floor ends in it, under a sky",
         elsewhere: "a bias of 10 mm starts rays behind the next wall",
-        holds: "E = 0 exactly: 1e6 of the sky's light at 14 points with 1024 paths",
+        holds: "E = 0 exactly: none of 10 points × 1024 paths sees the sky",
         guard: &NO_CONSTANT,
         without: "rays start outside of the box",
         check: dark_behind_a_t_junction,
@@ -116,16 +116,16 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "interpenetrating_boxes",
-        hard: "two black boxes through each other, under a sky, with points 1 mm from edges and corners",
+        hard: "two black boxes that lean, through each other, under a sky, with points 1 mm from edges of 40°",
         elsewhere: "a bias of 10 mm starts rays behind the next wall",
-        holds: "E = 0 exactly at 14 points",
+        holds: "E = 0 exactly at 10 points",
         guard: &NO_CONSTANT,
         without: "rays start outside",
         check: interpenetrating,
     },
     Case {
         name: "a_closed_box_in_a_bright_sky",
-        hard: "a sky of 1e6 cd/m² around white walls; points 1 mm from edges and corners",
+        hard: "a sky of 1e6 cd/m² around white walls that lean; points 1 mm from edges of 40°",
         elsewhere: "leaks at edges and corners are the first of all complaints (Godot 51638 and others)",
         holds: "E = 0 exactly, which is below 1e-6 of outside",
         guard: &NO_CONSTANT,
@@ -512,9 +512,9 @@ fn tee() -> (Vec<Vec3>, Vec<u32>) {
     let cut = -1.0 / 3.0;
     let point = |x: f32, z: f32| Vec3::new(x, -1.0, z);
     let quads = [
-        [point(-1.0, -1.0), point(-1.0, 1.0), point(0.1, 1.0), point(0.1, -1.0)],
-        [point(0.1, -1.0), point(0.1, cut), point(1.0, cut), point(1.0, -1.0)],
-        [point(0.1, cut), point(0.1, 1.0), point(1.0, 1.0), point(1.0, cut)],
+        [point(-0.1, -1.0), point(-0.1, 1.0), point(1.0, 1.0), point(1.0, -1.0)],
+        [point(-1.0, -1.0), point(-1.0, cut), point(-0.1, cut), point(-0.1, -1.0)],
+        [point(-1.0, cut), point(-1.0, 1.0), point(-0.1, 1.0), point(-0.1, cut)],
     ];
     let indices = (0..3).flat_map(|quad| [0, 1, 2, 0, 2, 3].map(|corner| 4 * quad + corner)).collect();
     (quads.concat(), indices)
@@ -523,25 +523,24 @@ fn tee() -> (Vec<Vec3>, Vec<u32>) {
 /// f32 puts each end of an edge, and the vertex between them, off by half a step of the largest coordinate (8 m here:
 /// 2⁻²² m), along three axes: a gap of at most 2·√3·2⁻²² m, and 2 m long.
 fn aimed_at_a_t_junction() -> Verdict {
-    let edge = [Vec3::new(0.1, -1.0, -1.0), Vec3::new(0.1, -1.0, 1.0)];
+    let edge = [Vec3::new(-0.1, -1.0, -1.0), Vec3::new(-0.1, -1.0, 1.0)];
     let leak = entering(&under(with_floor(black_box(), tee()), turned()), &[edge], 4e-6);
     let bound = 2.0 * 3.0_f64.sqrt() * 2.0_f64.powi(-22) * 2.0;
     ensure(leak <= bound, || format!("{leak:.2e} lx enter at a T-junction, more than {bound:.2e}"))
 }
 
-/// Points inside, a millimetre from edges and from the T.
+/// A root under which a cube's floor and its −x wall meet at 40°, as its ceiling and its +x wall do.
+fn leaning() -> Affine3A {
+    turned() * Affine3A::from_mat3(Mat3::from_cols(Vec3::X, Vec3::new(1.2, 1.0, 0.0), Vec3::Z))
+}
+
+/// Points in that cube, a millimetre from its narrow edges.
 fn near_edges() -> Vec<MeterPoint> {
-    let near = 0.999;
-    let along = [-0.9, -1.0 / 3.0, 0.0, 0.4];
-    let floor = along.iter().flat_map(|&x| {
-        [
-            (Vec3::new(x, -1.0, near), Vec3::Y),
-            (Vec3::new(-near, -1.0, x), Vec3::Y),
-            (Vec3::new(near, x, 1.0), Vec3::NEG_Z),
-        ]
-    });
-    let corners = [(Vec3::new(near, near, 1.0), Vec3::NEG_Z), (Vec3::new(0.1, -1.0, -near), Vec3::Y)];
-    floor.chain(corners).map(|(place, facing)| at(place, facing)).collect()
+    let along = [-0.9, -1.0 / 3.0, -0.332, 0.4, 0.999];
+    let sides = [(Vec3::new(-0.999, -1.0, 0.0), Vec3::Y), (Vec3::new(0.999, 1.0, 0.0), Vec3::NEG_Y)];
+    let point =
+        |(place, facing): (Vec3, Vec3), z: f32| at(leaning().transform_point3(place.with_z(z)), askew() * facing);
+    sides.into_iter().flat_map(|side| along.map(|z| point(side, z))).collect()
 }
 
 fn all_dark(readings: &[MeterReading]) -> Verdict {
@@ -552,8 +551,7 @@ fn all_dark(readings: &[MeterReading]) -> Verdict {
 }
 
 fn dark_behind_a_t_junction() -> Verdict {
-    let scene = under(with_floor(black_box(), tee()), turned());
-    all_dark(&light_at(&scene, &points_under(&near_edges(), turned()), 1 << 10)?)
+    all_dark(&light_at(&under(with_floor(black_box(), tee()), leaning()), &near_edges(), 1 << 10)?)
 }
 
 /// A floor of 250 m, a point 2 m over it and a triangle between.
@@ -564,11 +562,12 @@ fn shadow_of(triangle: &[Vec3; 3]) -> Verdict {
         .build();
     scene.lights.push(Light::Point(bulb(2.0 * Vec3::Y, 0.0)));
     scene.lights.push(Light::Point(PointLight { id: StableId::new("below"), ..bulb(Vec3::NEG_Y, 0.0) }));
-    let places = [Vec3::ZERO, Vec3::new(0.1, 0.0, 0.0), Vec3::new(124.0, 0.0, -124.5)];
+    // In the air: a point that is computed on a floor of 250 m is off along it by 0.1 mm.
+    let places = [Vec3::ZERO, Vec3::new(0.1, 0.0, 0.0), Vec3::new(124.0, 0.0, -124.5)].map(|p| p + 0.25 * Vec3::Y);
     let readings = light_at(&scene, &places.map(|place| at(place, Vec3::Y)), 256)?;
     all_dark(&readings[..1]).map_err(|error| format!("in the shadow {error}"))?;
     places[1..].iter().zip(&readings[1..]).try_for_each(|(place, reading)| {
-        reads(reading, 2.0 / (place.as_dvec3() - 2.0 * DVec3::Y).length().powi(3), 1e-5)
+        reads(reading, 1.75 / (place.as_dvec3() - 2.0 * DVec3::Y).length().powi(3), 1e-5)
     })
 }
 
@@ -596,9 +595,18 @@ fn mean(texels: &[Vec3]) -> f64 {
     texels.iter().map(|texel| f64::from(texel.x)).sum::<f64>() / texels.len() as f64
 }
 
+/// Whether a bake has the room's mean texel to 1e-3, and that has the level room's to 3 %, whose random numbers differ.
+fn is_like_the_room(scene: &Scene) -> Verdict {
+    let [level, room, other] = [&level_room(), &room(), scene].map(|scene| texels(scene).map(|texels| mean(&texels)));
+    let (level, room, other) = (level?, room?, other?);
+    ensure((room / level - 1.0).abs() < 0.03, || {
+        format!("the mean texel is {room:.5}, and {level:.5} of a level room")
+    })?;
+    ensure((other / room - 1.0).abs() < 1e-3, || format!("the mean texel is {other:.5}, not {room:.5}"))
+}
+
 fn doubled() -> Verdict {
-    let (once, twice) = (mean(&texels(&room())?), mean(&texels(&doubled_room(Material::clone))?));
-    ensure((twice / once - 1.0).abs() < 1e-3, || format!("the mean texel is {twice:.5}, and {once:.5} of single walls"))
+    is_like_the_room(&doubled_room(Material::clone))
 }
 
 fn coincident() -> Verdict {
@@ -629,14 +637,14 @@ fn interpenetrating() -> Verdict {
         instance.id = StableId::new(format!("second {}", instance.name));
     }
     join(&mut scene, &mut second);
-    all_dark(&light_at(&under(scene, turned()), &points_under(&near_edges(), turned()), 1 << 10)?)
+    all_dark(&light_at(&under(scene, leaning()), &near_edges(), 1 << 10)?)
 }
 
 fn dark_box() -> Verdict {
     let white = || grey(0.9);
     let sides = [white(), white(), white(), white(), white(), white()];
     let scene = SceneBuilder::default().room(Vec3::NEG_ONE, Vec3::ONE, sides).sky(Vec3::splat(1e6)).build();
-    all_dark(&light_at(&under(scene, turned()), &points_under(&near_edges(), turned()), 1 << 8)?)
+    all_dark(&light_at(&under(scene, leaning()), &near_edges(), 1 << 8)?)
 }
 
 /// A sheet that leans against a wall parts a black box; a lamp is on the one side.
@@ -738,8 +746,7 @@ fn far_is_refused(distance: f32) -> Verdict {
 
 /// The room in a world with two triangles this far away on either side, against the room alone.
 fn beside(distance: f32) -> Verdict {
-    let (alone, beside) = (mean(&texels(&room())?), mean(&texels(&room_beside(distance))?));
-    ensure((beside / alone - 1.0).abs() < 1e-3, || format!("the mean texel is {beside:.5}, and {alone:.5} alone"))
+    is_like_the_room(&room_beside(distance))
 }
 
 fn room_beside(distance: f32) -> Scene {
