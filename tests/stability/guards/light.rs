@@ -148,3 +148,23 @@ pub static DIMMING: Guard = Guard {
         },
     ],
 };
+
+pub static TWO_WAYS: Guard = Guard {
+    name: "lamps found in two ways",
+    does: "every vertex samples its lamps by solid angle and goes on in a direction that may meet them, weighted by the \
+           power heuristic (Veach and Guibas 1995); taken out, lamps are sampled by area alone",
+    edits: &[
+        Edit {
+            file: "src/trace/light/seen.rs",
+            text: ".map_or(Self::ByArea, Self::Rectangle)",
+            instead: ".map_or(Self::ByArea, |_| Self::ByArea)",
+        },
+        Edit {
+            file: "src/trace/light/seen.rs",
+            text: ".map_or(Self::ByArea, Self::Triangle)",
+            instead: ".map_or(Self::ByArea, |_| Self::ByArea)",
+        },
+        Edit { file: "src/trace/transport.rs", text: "    #[default]\n    Mis,", instead: "    Mis," },
+        Edit { file: "src/trace/transport.rs", text: "    Light,\n", instead: "    #[default]\n    Light,\n" },
+    ],
+};
