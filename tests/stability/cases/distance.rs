@@ -4,7 +4,7 @@ use crate::case::{Case, Verdict};
 use crate::common::meter::at;
 use crate::common::scenes::{SceneBuilder, glowing, grey, lit_room};
 use crate::guards::light::{
-    BULBS, DELTA, DIMMING, HORIZON, LAMP_END, ONE_SIDED, SOLID_ANGLE, SOLID_ANGLE_EXACT, TWO_WAYS,
+    BULBS, DELTA, DIMMING, HORIZON, LAMP_END, ONE_SIDED, SOLID_ANGLE, SOLID_ANGLE_EXACT, SPHERE_CONE, TWO_WAYS,
 };
 use crate::guards::rays::{ORIGIN_MOVE, SHADOW_LENGTH};
 use crate::judge::{ensure, light_at, light_by, reads};
@@ -117,21 +117,21 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "a_tenth_of_a_millimetre_from_a_bulb",
-        hard: "a sphere of 1 m fills all but 1.4 % of the view",
-        elsewhere: "a sphere sampled by its area: most of it faces away, and 1/d² has no bound",
-        holds: "E = I/d² within 2 %, noise counted in",
-        guard: &BULBS,
-        without: "1 − cos loses its digits in f32 as it nears 1",
-        check: || beside_a_bulb(1.0, 1.0001, 0.02),
+        hard: "a sphere of 1 m fills all but 1.4 % of a hemisphere, a part of which is below the tilted receiver's horizon",
+        elsewhere: "a sphere as a disc of πr²/d², or sampled by its area, of which most faces away",
+        holds: "E is that of what is above the horizon (quadrature) within 2 %, by light sampling alone",
+        guard: &SPHERE_CONE,
+        without: "the cone is too narrow: less of it is below the horizon",
+        check: || tilted_beside_a_bulb(1.0001),
     },
     Case {
         name: "touching_a_bulb",
-        hard: "the sphere fills the hemisphere: sin of its cone is 1, cos is 0",
+        hard: "the sphere fills a hemisphere: sin of its cone is 1, cos is 0; the receiver is tilted by 60°",
         elsewhere: "√ of a negative rounding error is NaN",
-        holds: "E = I/d² within 2 %, noise counted in",
-        guard: &BULBS,
-        without: BULB_WITHOUT,
-        check: || beside_a_bulb(1.0, 1.0, 0.02),
+        holds: "E = I·(1 + cos 60°)/2/r² within 2 %, by light sampling alone",
+        guard: &SPHERE_CONE,
+        without: "the cone is too narrow: less of it is below the horizon",
+        check: || tilted_beside_a_bulb(1.0),
     },
     Case {
         name: "inside_a_bulb",
@@ -411,6 +411,15 @@ fn beside_a_bulb(radius: f32, distance: f32, tolerance: f64) -> Verdict {
     let readings =
         light_at(&lit_by([Light::Point(bulb(towards * distance, radius))]), &[at(Vec3::ZERO, towards)], 1 << 14)?;
     reads(&readings[0], f64::from(distance).powi(-2), tolerance)
+}
+
+/// Beside a sphere of 1 m, tilted by 60° from the way to it.
+fn tilted_beside_a_bulb(distance: f32) -> Verdict {
+    let elevation = 30.0_f32.to_radians();
+    let place = distance * Vec3::new(elevation.cos(), elevation.sin(), 0.0);
+    let reading = by_light(&lit_by([Light::Point(bulb(place, 1.0))]), 1 << 14)?;
+    let half = (1.0 / f64::from(place.length()).max(1.0)).asin();
+    reads(&reading, cone_above_horizon(elevation.into(), half) / PI, 0.02)
 }
 
 fn set_into_a_ceiling() -> Verdict {

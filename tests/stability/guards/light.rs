@@ -168,3 +168,14 @@ pub static TWO_WAYS: Guard = Guard {
         Edit { file: "src/trace/transport.rs", text: "    Light,\n", instead: "    #[default]\n    Light,\n" },
     ],
 };
+
+pub static SPHERE_CONE: Guard = Guard {
+    name: "a near sphere is a cone",
+    does: "a sphere is seen as the cone of its tangents, 1 − cos = sin²/(1 + cos) with sin = r/d (Wang 1992); taken out, \
+           as a disc of πr²/d²",
+    edits: &[Edit {
+        file: "src/trace/light/sphere.rs",
+        text: "height: sine_squared / (1.0 + cosine) })",
+        instead: "height: 0.5 * sine_squared + 0.0 * cosine })",
+    }],
+};

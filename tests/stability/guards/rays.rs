@@ -41,8 +41,8 @@ pub static SHADOW_LENGTH: Guard = Guard {
            plane, in f64; taken out, it stops a ten-thousandth short (pbrt's ShadowEpsilon)",
     edits: &[Edit {
         file: "src/trace/accel.rs",
-        text: "let distance = offset.length();",
-        instead: "let distance = offset.length() * (1.0 - 1e-4);",
+        text: "self.search(origin, direction, Some((end, distance)), stops)",
+        instead: "self.search(origin, direction, Some((end, distance * (1.0 - 1e-4))), stops)",
     }],
 };
 

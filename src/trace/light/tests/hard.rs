@@ -3,11 +3,14 @@
 
 use super::sky::disc;
 use super::{along, lights, source, target};
+use crate::artefact::StableId;
 use crate::math::testing::Random;
+use crate::scene::{Light, RectLight, Scene};
+use crate::trace::Tracer;
 use crate::trace::light::emitter::Cone;
 use crate::trace::light::lights::Parts;
 use crate::trace::light::{Emitter, EmitterShape, LightContext, Lights, SourceIndex};
-use glam::{Vec2, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 
 fn of_strength(emitter: Emitter, strength: f32) -> Emitter {
     Emitter { strength: Vec3::splat(strength), mean_strength: Vec3::splat(strength), ..emitter }
@@ -146,4 +149,25 @@ fn shadow_rays_end_before_a_far_source() {
             }
         }
     }
+}
+
+/// A rectangle far from the world's origin keeps its size, though f32 has steps there as long as its sides.
+#[test]
+fn a_far_rectangle_keeps_its_size() {
+    let place = Vec3::new(3e4, -2e4, 1e4);
+    let lamp = RectLight {
+        id: StableId::new("lamp"),
+        name: "lamp".into(),
+        world_from_local: Affine3A::from_translation(place),
+        width: 2e-3,
+        height: 3e-3,
+        radiance: Vec3::ONE,
+        range: None,
+    };
+    let scene = Scene { lights: vec![Light::Rect(lamp)], ..Scene::default() };
+    let distance = 8.0;
+    let aim = Tracer::new(&scene).aim(place - distance * Vec3::Z, Vec3::Z, 0.5, Vec2::splat(0.5)).unwrap();
+    let solid_angle = f64::from(aim.pdf.unwrap()).recip();
+    let expected = 6e-6 / f64::from(distance * distance);
+    assert!((solid_angle / expected - 1.0).abs() < 0.02, "{solid_angle:e}, not {expected:e}");
 }
