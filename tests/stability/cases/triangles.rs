@@ -788,6 +788,8 @@ fn zero_area() -> Verdict {
     };
     let [plain, extra] = [floor(false), floor(true)].map(|scene| texels(&scene));
     let (plain, extra) = (plain?, extra?);
+    let brightest = plain.iter().fold(Vec3::ZERO, |most, texel| most.max(*texel));
+    ensure((brightest.x - 1.0).abs() < 1e-5, || format!("the brightest texel is {brightest}, not 1"))?;
     ensure(plain == extra, || format!("mean texels of {} and {}", mean(&plain), mean(&extra)))
 }
 

@@ -18,6 +18,11 @@ pub static VALIDATED: Guard = Guard {
             instead: "if false {",
         },
         Edit { file: "src/scene/validate.rs", text: "kinds.extend(mesh.uv1_fault());", instead: "" },
+        Edit {
+            file: "src/scene/validate.rs",
+            text: "kinds.extend(too_far(mesh, &instance.world_from_local));",
+            instead: "",
+        },
     ],
 };
 
