@@ -105,6 +105,17 @@ pub enum FaultKind {
     /// A transform that is not finite or that flattens space.
     #[error("has a transform that cannot be inverted; give it a scale other than zero on every axis")]
     SingularTransform,
+    /// A vertex so far away in the world that what is near could no longer be told apart.
+    #[error(
+        "has a vertex {distance:.1e} m from the world's origin, farther than the {limit:.0e} m that can be traced; bring \
+         it nearer or make the world smaller"
+    )]
+    TooFar {
+        /// The largest coordinate of the first such vertex [m].
+        distance: f64,
+        /// The farthest that is traced [m].
+        limit: f64,
+    },
     /// It refers to a mesh that is not there.
     #[error("refers to mesh number {index}, which is not there")]
     MissingMesh {

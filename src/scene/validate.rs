@@ -7,6 +7,11 @@ use super::{Fault, FaultKind, Instance, Mesh, Scene, Subject, Topology};
 use glam::{Affine3A, Vec2, Vec3};
 use std::collections::HashSet;
 
+/// The farthest coordinate that is traced [m]: farther than the moon. Rays tell things apart that are 10⁻¹³ of the
+/// scene's reach from each other, so that a single vertex at 10¹⁵ m would take the order from the walls of a room;
+/// and f32 has steps of 64 m there.
+const FARTHEST: f64 = 1e9;
+
 impl Scene {
     /// Every fault in the scene, each with the name of what is at fault. Empty for a sound scene.
     pub fn validate(&self) -> Vec<Fault> {
@@ -63,6 +68,7 @@ impl Scene {
             kinds.push(FaultKind::MissingMesh { index: instance.mesh });
             return kinds;
         };
+        kinds.extend(too_far(mesh, &instance.world_from_local));
         if let Some(request) = instance.lightmap {
             if let Some(density) = request.density
                 && !(density.is_finite() && density > 0.0)
@@ -135,6 +141,15 @@ impl Mesh {
         };
         (!self.triangles().any(has_area)).then_some(FaultKind::Uv1WithoutArea)
     }
+}
+
+/// The first vertex that a transform takes too far away. One that is no number is another fault's.
+fn too_far(mesh: &Mesh, transform: &Affine3A) -> Option<FaultKind> {
+    let matrix = glam::Mat3::from(transform.matrix3).as_dmat3();
+    let translation = Vec3::from(transform.translation).as_dvec3();
+    let distance = |position: &Vec3| (matrix * position.as_dvec3() + translation).abs().max_element();
+    let distance = mesh.positions.iter().map(distance).find(|distance| distance.is_finite() && *distance > FARTHEST)?;
+    Some(FaultKind::TooFar { distance, limit: FARTHEST })
 }
 
 fn is_radiance(radiance: Vec3) -> bool {
@@ -215,6 +230,14 @@ mod tests {
         assert_fault(
             |s| s.meshes[0].positions[2].y = f32::NAN,
             "mesh \"quad\" has a position that is not a finite number (vertex 2)",
+        );
+        assert_fault(
+            |s| s.meshes[0].positions[2].y = -3e12,
+            "instance \"wall\" has a vertex 3.0e12 m from the world's origin, farther than the 1e9 m",
+        );
+        assert_fault(
+            |s| s.instances[0].world_from_local = Affine3A::from_scale(Vec3::splat(2e9)),
+            "instance \"wall\" has a vertex 2.0e9 m",
         );
         assert_fault(
             |s| s.meshes[0].indices = Indices::U32(vec![0, 1, 9]),

@@ -92,6 +92,11 @@ impl SceneBuilder {
         assert_eq!(self.scene.validate(), []);
         self.scene
     }
+
+    /// A scene that has faults.
+    pub fn unchecked(self) -> Scene {
+        self.scene
+    }
 }
 
 /// A grey that reflects and glows.

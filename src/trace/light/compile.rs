@@ -61,11 +61,11 @@ impl Sources {
 fn rectangle(light: &RectLight, traced_from_world: TracedFromWorld) -> Emitter {
     let placement = Placement::traced(&light.world_from_local, traced_from_world);
     let (x, y) = (0.5 * light.width, 0.5 * light.height);
-    let [corner, right, top] =
-        [Vec3::new(-x, -y, 0.0), Vec3::new(x, -y, 0.0), Vec3::new(-x, y, 0.0)].map(|p| placement.position(p));
-    let edges = [right - corner, top - corner];
+    let corner = placement.position(Vec3::new(-x, -y, 0.0));
+    // Not as differences of corners, which are rounded where they stand: far away a lamp would lose its size.
+    let edges = [light.width * Vec3::X, light.height * Vec3::Y].map(|e| light.world_from_local.transform_vector3(e));
     let normal = placement.normal(Vec3::NEG_Z);
-    let error = position_error([corner, right, top, right + edges[1]]);
+    let error = position_error([corner, corner + edges[0], corner + edges[1], corner + edges[0] + edges[1]]);
     // A lamp set flush into a ceiling must lie before it, not half behind it by rounding.
     let corner = corner + normal * error.dot(normal.abs());
     Emitter {

@@ -239,9 +239,24 @@ impl Emitter {
         let cosine = f64::from(self.normal.dot(wi).abs());
         let solid_angle = seen.solid_angle(distance, cosine, || self.area());
         let towards_receiver = if self.normal.dot(wi) > 0.0 { -self.normal } else { self.normal };
-        let target = receiver + offset + towards_receiver * self.error.dot(self.normal.abs());
+        let target = self.end_before(receiver, offset, towards_receiver);
         let value = radiance.as_dvec3() * solid_angle;
         Some(EmitterSample { wi, end: End::At(target), distance, value, solid_angle: Some(solid_angle) })
+    }
+
+    /// Where a shadow ray from `receiver` along `offset` to a flat source ends: off it, on the side of the unit normal
+    /// `towards_receiver`. The offset's own rounding grows with its length and may be far more than the source's
+    /// error: from 100 m it put the ends of a fifth of all rays behind a panel, which then blocked its own light. So
+    /// the end is brought back to the source's plane, in f64, before it is moved off.
+    fn end_before(&self, receiver: Vec3, offset: Vec3, towards_receiver: Vec3) -> Vec3 {
+        let point = receiver.as_dvec3() + offset.as_dvec3();
+        let corner = match self.shape {
+            EmitterShape::Rectangle { corner, .. } | EmitterShape::Triangle { vertices: [corner, ..] } => corner,
+            EmitterShape::Sphere { centre, .. } | EmitterShape::Point { centre } => centre,
+        };
+        let normal = towards_receiver.as_dvec3();
+        let height = f64::from(self.error.dot(self.normal.abs())) - normal.dot(point - corner.as_dvec3());
+        (point + normal * height).as_vec3()
     }
 
     fn sample_sphere(&self, centre: Vec3, radius: f32, receiver: Vec3, u: Vec2) -> Option<EmitterSample> {

@@ -2,12 +2,15 @@
 //! place. Nowhere NaN, and what is claimed still sums to one.
 
 use super::sky::disc;
-use super::{along, lights, source};
+use super::{along, lights, source, target};
+use crate::artefact::StableId;
 use crate::math::testing::Random;
+use crate::scene::{Light, RectLight, Scene};
+use crate::trace::Tracer;
 use crate::trace::light::emitter::Cone;
 use crate::trace::light::lights::Parts;
 use crate::trace::light::{Emitter, EmitterShape, LightContext, Lights, SourceIndex};
-use glam::{Vec2, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 
 fn of_strength(emitter: Emitter, strength: f32) -> Emitter {
     Emitter { strength: Vec3::splat(strength), mean_strength: Vec3::splat(strength), ..emitter }
@@ -121,4 +124,50 @@ fn suns_at_the_horizon() {
         let sun = Lights::new(Parts { distant: vec![disc(diameter), disc(0.0)], ..Parts::default() });
         assert!(interrogate(&sun, Vec3::ZERO) > 50, "{diameter}");
     }
+}
+
+/// The end of a shadow ray lies before a flat source, on the receiver's side and by its own error at most, however far
+/// away the receiver is.
+#[test]
+fn shadow_rays_end_before_a_far_source() {
+    let mut random = Random::new(5);
+    for reach in [1.0_f32, 1e2, 1e4, 1e6] {
+        for _ in 0..300 {
+            let normal = random.direction();
+            let u = normal.any_orthonormal_vector();
+            let edges = [u, normal.cross(u)];
+            let rectangle = EmitterShape::Rectangle { corner: Vec3::ZERO, edges };
+            let triangle = EmitterShape::Triangle { vertices: [Vec3::ZERO, edges[0], edges[1]] };
+            for shape in [rectangle, triangle] {
+                let emitter = Emitter { normal, error: Vec3::splat(2e-6), ..source(shape, true) };
+                let receiver = reach * random.direction();
+                let Some(sample) = emitter.sample(receiver, random.square()) else { continue };
+                let side = if normal.dot(receiver) > 0.0 { 1.0 } else { -1.0 };
+                let height = f64::from(side) * normal.as_dvec3().dot(target(sample.end).as_dvec3());
+                let error = f64::from(emitter.error.dot(normal.abs()));
+                assert!(height > 0.5 * error && height < 1.5 * error, "{height} of {error} from {reach} m");
+            }
+        }
+    }
+}
+
+/// A rectangle far from the world's origin keeps its size, though f32 has steps there as long as its sides.
+#[test]
+fn a_far_rectangle_keeps_its_size() {
+    let place = Vec3::new(3e4, -2e4, 1e4);
+    let lamp = RectLight {
+        id: StableId::new("lamp"),
+        name: "lamp".into(),
+        world_from_local: Affine3A::from_translation(place),
+        width: 2e-3,
+        height: 3e-3,
+        radiance: Vec3::ONE,
+        range: None,
+    };
+    let scene = Scene { lights: vec![Light::Rect(lamp)], ..Scene::default() };
+    let distance = 8.0;
+    let aim = Tracer::new(&scene).aim(place - distance * Vec3::Z, Vec3::Z, 0.5, Vec2::splat(0.5)).unwrap();
+    let solid_angle = f64::from(aim.pdf.unwrap()).recip();
+    let expected = 6e-6 / f64::from(distance * distance);
+    assert!((solid_angle / expected - 1.0).abs() < 0.02, "{solid_angle:e}, not {expected:e}");
 }
