@@ -18,8 +18,8 @@ pub static ERROR_PER_AXIS: Guard = Guard {
 
 pub static ERROR_BOUND: Guard = Guard {
     name: "a bound that is derived",
-    does: "the move along the normal is 32u·Σ|n|·max v, the next power of two above 19.3u, which interpolation, the move \
-           itself and the rounded direction need together (Higham 2002, lemma 3.1)",
+    does: "the move along the normal is 32u of each coordinate's size, the next power of two above the 19.3u that \
+           interpolation, the move itself and the rounded direction need together (Higham 2002, lemma 3.1)",
     edits: &[Edit { file: "src/trace/surface.rs", text: "16.0 * f32::EPSILON * v", instead: "0.5 * f32::EPSILON * v" }],
 };
 

@@ -37,7 +37,7 @@ pub static SOLID_ANGLE_EXACT: Guard = Guard {
     edits: &[
         Edit {
             file: "src/math/spherical_rectangle.rs",
-            text: "2.0 * (n * (d1 + d2)).atan2(d1 * d2 - n * n)",
+            text: "2.0 * Portable::atan2(n * (d1 + d2), d1 * d2 - n * n)",
             instead: "{ let _ = (n, d1, d2); let z2 = self.distance * self.distance; \
                       let angle = |a: f64, b: f64| f64::from((-(a * b) / ((z2 + a * a) * (z2 + b * b)).sqrt()) as f32)\
                       .acos() as f32; let sum = angle(-self.y0, self.x1) + angle(self.x1, self.y1) \
