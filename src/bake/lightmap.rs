@@ -3,6 +3,7 @@
 use super::atlas::{Atlas, Chart};
 use super::balance::energy_balance;
 use super::dilate::dilate;
+use super::endless::{refuse_endless_paths, spread};
 use super::gather::{Estimate, Paths};
 use super::sites::{Site, sites};
 use super::workers::Workers;
@@ -75,14 +76,19 @@ pub fn bake_lightmap(
     refuse_what_cannot_be_baked(&tracer, &faults)?;
     let atlas = Atlas::new(scene, &tracer, settings)?;
     let (sites, overlaps) = sites(scene, &tracer, &atlas, settings);
+    refuse_endless_paths(scene, &tracer, &settings.transport, |probe, sobol, tally| {
+        if let Some(site) = spread(&sites, probe) {
+            tracer.diffuse_radiance(&site.texel.start(&tracer, Vec2::splat(0.5)), sobol, &settings.transport, tally);
+        }
+    })?;
     let work = workers.gather(
         &sites,
         |site, cancel| {
             let paths = Paths { key: site.key, count: settings.samples_per_texel, clamp: settings.transport.clamp };
-            Estimate::gather(paths, cancel, |sobol, rays| {
+            Estimate::gather(paths, cancel, |sobol, tally| {
                 let [u, v, ..] = sobol.draw(Dimensions::Start);
                 let start = site.texel.start(&tracer, Vec2::new(u, v));
-                tracer.diffuse_radiance(&start, sobol, &settings.transport, rays)
+                tracer.diffuse_radiance(&start, sobol, &settings.transport, tally)
             })
         },
         Estimate::relative_stderr,

@@ -41,9 +41,7 @@ impl Scene {
             }
             blame(Subject::Light(light.name().to_owned()), kinds);
         }
-        if !is_radiance(self.sky_radiance) {
-            blame(Subject::Sky, vec![FaultKind::BadEmission]);
-        }
+        blame(Subject::Sky, emission_fault(self.sky_radiance).into_iter().collect());
         if let Some(map) = &self.environment {
             blame(Subject::Environment(map.name.clone()), map.faults());
         }
@@ -135,6 +133,20 @@ impl Mesh {
         };
         (!self.triangles().any(has_area)).then_some(FaultKind::Uv1WithoutArea)
     }
+}
+
+/// The most that a source may give off [cd/m², cd or lx]: its square is still an `f32`, and so is what becomes of it
+/// by the inverse square of 10⁻¹⁰ m, or as the radiance of the smallest sun, 3.2·10⁹ times its illuminance. The sun's
+/// own disc has 1.6·10⁹ cd/m².
+const MAX_EMISSION: f32 = 1e18;
+
+/// What is wrong with an emission, if anything is.
+fn emission_fault(emission: Vec3) -> Option<FaultKind> {
+    if !is_radiance(emission) {
+        return Some(FaultKind::BadEmission);
+    }
+    let (value, limit) = (emission.max_element(), MAX_EMISSION);
+    (value > limit).then_some(FaultKind::TooBright { value, limit })
 }
 
 fn is_radiance(radiance: Vec3) -> bool {

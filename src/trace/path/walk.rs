@@ -1,6 +1,6 @@
 //! One path: from a vertex along a ray to the next vertex, and what light it finds on the way.
 
-use super::PathStart;
+use super::{PathStart, Tally};
 use super::vertex::{Ray, Vertex};
 use crate::math::Frame;
 use crate::trace::accel::Hit;
@@ -23,8 +23,11 @@ use glam::{Vec2, Vec3};
 /// gains, the second a white one; this takes most of both.
 pub(super) const ROULETTE_THROUGHPUT: f32 = 0.15;
 
-/// The best chance of survival at any bounce. Ends paths between surfaces that absorb nothing.
-pub(super) const MAX_SURVIVAL: f32 = 0.998;
+/// Vertices after which a path is cut, and counted. Where a share ε of what a path carries is lost at each vertex, it
+/// lives on with the chance 1 while it carries more than [`ROULETTE_THROUGHPUT`] and then with 1 − ε at each vertex:
+/// it reaches this number with a chance of (1 − ε)ⁿ / 0.15, which is below 10⁻¹² from ε = 4.5·10⁻⁴ upwards (and
+/// 2·10⁻²⁸ between walls of albedo 0.999). What keeps more has no steady state that a bake would reach.
+pub(crate) const MAX_VERTICES: u32 = 1 << 16;
 
 /// The largest chance to pass a surface that is there at all, so that what it shows is not missed.
 const MAX_PASSING: f32 = 0.999;
@@ -34,7 +37,7 @@ pub(super) struct Walk<'t, const K: u32, S> {
     tracer: &'t Tracer,
     sampler: &'t S,
     transport: &'t Transport,
-    rays: &'t mut u64,
+    tally: &'t mut Tally,
     radiance: Vec3,
     throughput: Vec3,
     max_bounces: Option<u32>,
@@ -42,13 +45,15 @@ pub(super) struct Walk<'t, const K: u32, S> {
     number: u32,
     /// How much the body that the path is in absorbs [1/m]; zero outside.
     absorption: Vec3,
+    /// The triangle that it is at.
+    triangle: u32,
 }
 
 impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
-    pub(super) fn new(tracer: &'t Tracer, sampler: &'t S, transport: &'t Transport, rays: &'t mut u64) -> Self {
+    pub(super) fn new(tracer: &'t Tracer, sampler: &'t S, transport: &'t Transport, tally: &'t mut Tally) -> Self {
         let (radiance, throughput, absorption) = (Vec3::ZERO, Vec3::ONE, Vec3::ZERO);
         let max_bounces = tracer.max_bounces(transport);
-        Self { tracer, sampler, transport, rays, radiance, throughput, max_bounces, number: 0, absorption }
+        Self { tracer, sampler, transport, tally, radiance, throughput, max_bounces, number: 0, absorption, triangle: 0 }
     }
 
     /// E/π at a receiver, by one path.
@@ -84,6 +89,11 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
                 None => return,
             }
             self.number += 1;
+            if self.number >= MAX_VERTICES {
+                self.tally.endless += 1;
+                self.tally.kept_by = Some(self.tracer.surface_of[self.triangle as usize]);
+                return;
+            }
         }
     }
 
@@ -132,7 +142,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             (_, Some(_)) => self.sampler.draw(Dimensions::Light { vertex: self.number })[3],
         };
         let (hit, surface) = loop {
-            *self.rays += 1;
+            self.tally.rays += 1;
             let hit = tracer.accel.closest(origin, ray.direction, f32::INFINITY);
             let end = hit.map_or(f32::INFINITY, |hit| hit.t);
             if ray.survival.is_some() && tracer.lights.has_passable() {
@@ -176,6 +186,11 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         let vertex = self.vertex(shape, place, ray);
         let albedo = if K & LAYERED == 0 { vertex.lambert.albedo } else { vertex.bsdf.albedo(vertex.wo) };
         let carried = (self.throughput * albedo).max_element();
+        if !carried.is_finite() {
+            // A path that has lost its number is given up as a whole, and counted where it is added up.
+            self.radiance = Vec3::NAN;
+            return None;
+        }
         if carried <= 0.0 {
             return None;
         }
@@ -186,6 +201,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             }
             self.throughput /= survival;
         }
+        self.triangle = hit.triangle;
         Some(vertex)
     }
 
@@ -276,7 +292,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         if K & (TEXTURED | PASSING) != 0 {
             value *= self.tracer.glow_share::<K>(&sample, context);
         }
-        *self.rays += 1;
+        self.tally.rays += 1;
         value *= self.visibility(origin, sample.wi, sample.end);
         if K & LAYERED != 0 && value != Vec3::ZERO {
             let absorption = match vertex.beyond {
@@ -383,7 +399,10 @@ fn dimming(absorption: Vec3, distance: f32) -> Vec3 {
 }
 
 /// Chance that a path goes on that carries this much in its strongest channel, never above 1: above it the division
-/// by the chance would lose the light that the survivors should stand for.
+/// by the chance would lose the light that the survivors should stand for. Nor is 1 lowered to make sure of an end: a
+/// path that is worth its while would be ended for nothing, and those that are left would weigh more at each vertex.
+/// With a best chance of 0.998 the efficiency was 0.66 of this one in furnaces of albedo 0.9, 0.20 in 0.99 and 0.018
+/// in 0.999 (5063 rays for each path); with one of 0.95, 0.23, 0.008 and none at all.
 pub(super) fn survival_probability(carried: f32) -> f32 {
-    (carried / ROULETTE_THROUGHPUT).min(MAX_SURVIVAL)
+    (carried / ROULETTE_THROUGHPUT).min(1.0)
 }
