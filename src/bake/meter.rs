@@ -98,9 +98,11 @@ pub fn measure_irradiance(
         |point, cancel| {
             let start = tracer.start_at(point.position, point.normal.normalize());
             let key = key(KeyKind::Point, transport.seed, bits(point.position), bits(point.normal));
-            Estimate::gather(Paths { key, count: *samples_per_point, clamp: transport.clamp }, cancel, |sobol, tally| {
-                tracer.diffuse_radiance(&start, sobol, transport, tally)
-            })
+            Estimate::gather(
+                Paths { key, count: *samples_per_point, clamp: transport.clamp },
+                cancel,
+                |sobol, tally| tracer.diffuse_radiance(&start, sobol, transport, tally),
+            )
         },
         Estimate::relative_stderr,
     )?;

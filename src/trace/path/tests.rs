@@ -1,8 +1,8 @@
 //! The estimator as a whole, in furnaces, whose answer is known: a closed room of one albedo ρ whose walls all glow
 //! with Le shows Le / (1 − ρ) in every direction. And that the check which says so would notice if it did not.
 
-use super::{PathStart, Tally};
 use super::walk::{ROULETTE_THROUGHPUT, survival_probability};
+use super::{PathStart, Tally};
 use crate::math::testing::{Random, mean_and_error, mean_within};
 use crate::math::{Frame, combine, square_to_cosine_hemisphere, square_to_triangle};
 use crate::scene::Material;
@@ -51,8 +51,9 @@ fn the_furnace() {
     for (albedo, estimator, paths) in cases {
         let (tracer, truth) = furnace(albedo);
         let transport = Transport { estimator, ..Transport::default() };
-        let (mean, error) =
-            measure(&tracer, paths, |start, sampler| tracer.diffuse_radiance(start, sampler, &transport, &mut Tally::default()));
+        let (mean, error) = measure(&tracer, paths, |start, sampler| {
+            tracer.diffuse_radiance(start, sampler, &transport, &mut Tally::default())
+        });
         let found = mean_within(mean, error, truth, TOLERANCE * truth);
         assert_eq!(found, Ok(()), "ρ = {albedo}, {estimator:?}");
     }

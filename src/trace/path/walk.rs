@@ -1,7 +1,7 @@
 //! One path: from a vertex along a ray to the next vertex, and what light it finds on the way.
 
-use super::{PathStart, Tally};
 use super::vertex::{Ray, Vertex};
+use super::{PathStart, Tally};
 use crate::math::Frame;
 use crate::trace::accel::Hit;
 use crate::trace::bsdf::{Bsdf, Density, Lambert};
@@ -53,7 +53,18 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
     pub(super) fn new(tracer: &'t Tracer, sampler: &'t S, transport: &'t Transport, tally: &'t mut Tally) -> Self {
         let (radiance, throughput, absorption) = (Vec3::ZERO, Vec3::ONE, Vec3::ZERO);
         let max_bounces = tracer.max_bounces(transport);
-        Self { tracer, sampler, transport, tally, radiance, throughput, max_bounces, number: 0, absorption, triangle: 0 }
+        Self {
+            tracer,
+            sampler,
+            transport,
+            tally,
+            radiance,
+            throughput,
+            max_bounces,
+            number: 0,
+            absorption,
+            triangle: 0,
+        }
     }
 
     /// E/π at a receiver, by one path.
