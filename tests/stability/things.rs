@@ -1,11 +1,13 @@
 //! Materials and bodies that several groups of cases use, and a look through a camera.
 
+use crate::common::meter::on_walls;
 use crate::common::scenes::{SceneBuilder, glowing};
-use crate::judge::no_path_was_lost;
+use crate::judge::{light_by, mean_reads, no_path_was_lost};
 use bevy_kiln::bake::{CancelToken, PictureSettings, render_picture};
 use bevy_kiln::scene::{Camera, Interior, Material, Scattering, Scene, Standard};
-use bevy_kiln::trace::Transport;
+use bevy_kiln::trace::{Estimator, Transport};
 use glam::{DVec3, Vec3};
+use std::f64::consts::PI;
 
 /// A white surface that scatters in this way.
 pub fn of(scattering: Scattering) -> Material {
@@ -60,6 +62,13 @@ pub fn level(
 pub fn room_of_radiance_one() -> SceneBuilder {
     let side = || glowing(0.5, 0.5);
     SceneBuilder::default().room(Vec3::NEG_ONE, Vec3::ONE, [side(), side(), side(), side(), side(), side()])
+}
+
+/// Whether E = π on the walls of a furnace of radiance 1, seen by surface samples, which have the least noise there.
+pub fn furnace_of_one(scene: &Scene, samples: u32, tolerance: f64) -> Result<(), String> {
+    let transport = Transport { estimator: Estimator::Bsdf, ..Transport::default() };
+    let readings = light_by(scene, &on_walls(Vec3::NEG_ONE, Vec3::ONE, 2), samples, transport)?;
+    mean_reads(&readings, PI, tolerance)
 }
 
 /// A sphere of triangles: an octahedron, each triangle cut in four `levels` times, facing outwards.

@@ -45,6 +45,11 @@ pub(super) struct Walk<'t, const K: u32, S> {
     number: u32,
     /// How much the body that the path is in absorbs [1/m]; zero outside.
     absorption: Vec3,
+    /// Whether it is known what the path is in: one that starts in a body learns it where it meets that from behind.
+    knows_body: bool,
+    /// How much radiance is concentrated where the path began, over where it is: the index squared, which comes back
+    /// on the way out and is no loss.
+    concentration: f32,
     /// The triangle that it is at.
     triangle: u32,
 }
@@ -63,6 +68,8 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             max_bounces,
             number: 0,
             absorption,
+            knows_body: false,
+            concentration: 1.0,
             triangle: 0,
         }
     }
@@ -134,6 +141,8 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             && let Some(absorption) = vertex.beyond
         {
             self.absorption = absorption;
+            self.knows_body = true;
+            self.concentration *= vertex.bsdf.concentration();
         }
         self.throughput *= sample.weight;
         Some(Ray { origin, direction, context, density: sample.density, survival: Some(u_survive) })
@@ -163,8 +172,11 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
                 self.escape(ray);
                 return None;
             };
-            self.absorb(hit.t);
             let surface = tracer.surface(hit.triangle);
+            if K & LAYERED != 0 && !self.knows_body {
+                self.learn_body(hit, surface, ray.direction);
+            }
+            self.absorb(hit.t);
             if K & PASSING == 0 || !surface.passes {
                 break (hit, surface);
             }
@@ -197,6 +209,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         let vertex = self.vertex(shape, place, ray);
         let albedo = if K & LAYERED == 0 { vertex.lambert.albedo } else { vertex.bsdf.albedo(vertex.wo) };
         let carried = (self.throughput * albedo).max_element();
+        let carried = if K & LAYERED == 0 { carried } else { carried * self.concentration };
         if !carried.is_finite() {
             // A path that has lost its number is given up as a whole, and counted where it is added up.
             self.radiance = Vec3::NAN;
@@ -381,6 +394,16 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         }
     }
 
+    /// A path that meets a body from behind before it has crossed any surface has been in it from its start.
+    fn learn_body(&mut self, hit: Hit, surface: &Surface, direction: Vec3) {
+        if let Some(absorption) = surface.body
+            && self.tracer.triangles[hit.triangle as usize].normal.dot(direction) > 0.0
+        {
+            self.absorption = absorption;
+            self.knows_body = true;
+        }
+    }
+
     fn absorb(&mut self, distance: f32) {
         if K & LAYERED != 0 {
             self.throughput *= dimming(self.absorption, distance);
@@ -409,7 +432,7 @@ fn dimming(absorption: Vec3, distance: f32) -> Vec3 {
     Vec3::from_array(absorption.to_array().map(channel))
 }
 
-/// Chance that a path goes on that carries this much in its strongest channel, never above 1: above it the division
+/// Chance that a path goes on that carries this much in its strongest channel, index squared aside, never above 1: above it the division
 /// by the chance would lose the light that the survivors should stand for. Nor is 1 lowered to make sure of an end: a
 /// path that is worth its while would be ended for nothing, and those that are left would weigh more at each vertex.
 /// With a best chance of 0.998 the efficiency was 0.66 of this one in furnaces of albedo 0.9, 0.20 in 0.99 and 0.018

@@ -91,7 +91,7 @@ pub static WHAT_THE_COAT_LEAVES: Guard = Guard {
 
 pub static PHONG: Guard = Guard {
     name: "Phong's lobe by distance",
-    does: "the cosine to the mirror direction comes from the distance of two unit vectors, |a − b|²/2 = 1 − cos, which \
+    does: "the cosine to the mirror direction is 1 less half the square of the distance of two unit vectors, which \
            keeps the digits that an exponent of 1e6 needs; directions below the surface are no samples",
     edits: &[
         Edit {
