@@ -2,9 +2,11 @@
 //! instead of waiting for what has no end. Nothing is measured here.
 
 use super::BakeError;
+use super::sites::Site;
 use crate::math::combine;
 use crate::scene::Scene;
 use crate::trace::{MAX_VERTICES, Sobol, Tally, Tracer, Transport};
+use glam::Vec2;
 
 /// Paths from sources, and as many from what receives.
 const PROBES: u64 = 64;
@@ -28,6 +30,20 @@ pub(super) fn refuse_endless_paths(
         }
     }
     Ok(())
+}
+
+/// The same for paths from the texels of a lightmap.
+pub(super) fn refuse_endless_texels(
+    scene: &Scene,
+    tracer: &Tracer,
+    transport: &Transport,
+    sites: &[Site],
+) -> Result<(), BakeError> {
+    refuse_endless_paths(scene, tracer, transport, |probe, sobol, tally| {
+        if let Some(site) = spread(sites, probe) {
+            tracer.diffuse_radiance(&site.texel.start(tracer, Vec2::splat(0.5)), sobol, transport, tally);
+        }
+    })
 }
 
 /// The item at which a probe starts: evenly over the list.

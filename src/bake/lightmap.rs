@@ -3,7 +3,7 @@
 use super::atlas::{Atlas, Chart};
 use super::balance::energy_balance;
 use super::dilate::dilate;
-use super::endless::{refuse_endless_paths, spread};
+use super::endless::refuse_endless_texels;
 use super::gather::{Estimate, Paths};
 use super::sites::{Site, sites};
 use super::workers::Workers;
@@ -76,11 +76,7 @@ pub fn bake_lightmap(
     refuse_what_cannot_be_baked(&tracer, &faults)?;
     let atlas = Atlas::new(scene, &tracer, settings)?;
     let (sites, overlaps) = sites(scene, &tracer, &atlas, settings);
-    refuse_endless_paths(scene, &tracer, &settings.transport, |probe, sobol, tally| {
-        if let Some(site) = spread(&sites, probe) {
-            tracer.diffuse_radiance(&site.texel.start(&tracer, Vec2::splat(0.5)), sobol, &settings.transport, tally);
-        }
-    })?;
+    refuse_endless_texels(scene, &tracer, &settings.transport, &sites)?;
     let work = workers.gather(
         &sites,
         |site, cancel| {

@@ -5,7 +5,7 @@ use super::walk::{ROULETTE_THROUGHPUT, survival_probability};
 use super::{PathStart, Tally};
 use crate::math::testing::{Random, mean_and_error, mean_within};
 use crate::math::{Frame, combine, square_to_cosine_hemisphere, square_to_triangle};
-use crate::scene::Material;
+use crate::scene::{Interior, Material, Scattering, Standard};
 use crate::trace::light::{End, LightContext};
 use crate::trace::mis::power_heuristic;
 use crate::trace::sampler::{Dimensions, Sampler};
@@ -193,4 +193,33 @@ fn a_path_that_nothing_ends_is_cut_and_counted() {
     let mut tally = Tally::default();
     tracer.diffuse_radiance(&start, &Sobol::new(1, 0), &capped, &mut tally);
     assert_eq!((tally.endless, tally.rays), (0, 101));
+}
+
+/// A start that lies in a body learns so at the first surface that it meets from behind, and not at one from before.
+#[test]
+fn a_path_that_starts_in_a_body_is_dimmed_from_its_start() {
+    let attenuation = |colour: f32| {
+        let interior = Interior::Volume { attenuation_colour: Vec3::splat(colour), attenuation_distance: 1e-3 };
+        let glass = Standard {
+            specular_transmission: 1.0,
+            perceptual_roughness: 0.0,
+            ior: 1.0,
+            interior,
+            ..Standard::default()
+        };
+        let material = Material::scattering("glass", Vec3::ONE, Scattering::Standard(Box::new(glass)));
+        // The cube faces inwards: mirrored, outwards.
+        let mut scene = Shape::cube().moved(|v| Vec3::new(1.0 - v.x, v.y, v.z)).scene(material, Affine3A::IDENTITY);
+        scene.sky_radiance = Vec3::ONE;
+        Tracer::new(&scene)
+    };
+    let value = |tracer: &Tracer, position: Vec3| {
+        let start = PathStart::free(position, Vec3::Y);
+        tracer.diffuse_radiance(&start, &Sobol::new(3, 5), &Transport::default(), &mut Tally::default())
+    };
+    let (clear, dark) = (attenuation(1.0), attenuation(0.5));
+    let (inside, above) = (Vec3::splat(0.5), Vec3::new(0.5, 2.0, 0.5));
+    assert!((value(&clear, inside) - 1.0).length() < 1e-5, "{}", value(&clear, inside));
+    assert_eq!(value(&dark, inside), Vec3::ZERO);
+    assert_eq!(value(&dark, above), Vec3::ONE);
 }
