@@ -135,10 +135,10 @@ impl Mesh {
     }
 }
 
-/// The most that a source may give off [cd/m², cd or lx]: its square is still an `f32`, and so is what becomes of it
-/// by the inverse square of 10⁻¹⁰ m, or as the radiance of the smallest sun, 3.2·10⁹ times its illuminance. The sun's
-/// own disc has 1.6·10⁹ cd/m².
-const MAX_EMISSION: f32 = 1e18;
+/// The most that a source may give off [cd/m², cd or lx]. The largest `f32` is 3·10³⁸; this leaves room for the radiance
+/// of the smallest sun, 3.2·10⁹ times its illuminance, and for the inverse square of a micrometre. The sun's own disc
+/// has 1.6·10⁹ cd/m².
+const MAX_EMISSION: f32 = 1e25;
 
 /// What is wrong with an emission, if anything is.
 fn emission_fault(emission: Vec3) -> Option<FaultKind> {

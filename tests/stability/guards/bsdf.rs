@@ -26,11 +26,18 @@ pub static RADIANCE_BY_INDEX: Guard = Guard {
 pub static TOTAL_REFLECTION: Guard = Guard {
     name: "total reflection",
     does: "where Snell's law has no solution, all is reflected, before a root is taken of what is negative",
-    edits: &[Edit {
-        file: "src/trace/bsdf/fresnel.rs",
-        text: "    if sin2 >= 1.0 {\n",
-        instead: "    if sin2 >= f32::INFINITY {\n",
-    }],
+    edits: &[
+        Edit {
+            file: "src/trace/bsdf/fresnel.rs",
+            text: "    if sin2 >= 1.0 {\n",
+            instead: "    if sin2 >= f32::INFINITY {\n",
+        },
+        Edit {
+            file: "src/trace/bsdf/fresnel.rs",
+            text: "Refracted { reflectance: reflectance.min(1.0), cos: cos_far }",
+            instead: "Refracted { reflectance, cos: cos_far }",
+        },
+    ],
 };
 
 pub static MATCHED: Guard = Guard {

@@ -71,16 +71,23 @@ pub static NUMBER_DEALT_ANEW: Guard = Guard {
     edits: &[Edit { file: "src/trace/path/walk.rs", text: "                u_pass /= chance;\n", instead: "" }],
 };
 
+pub static BODY_LEARNT: Guard = Guard {
+    name: "a body learnt from behind",
+    does: "a path that meets a body's surface from behind before it crossed any has been in the body from its start, \
+           and is dimmed on its way there",
+    edits: &[Edit {
+        file: "src/trace/path/walk.rs",
+        text: "if K & LAYERED != 0 && !self.knows_body {",
+        instead: "if K & LAYERED != 0 && !self.knows_body && hit.t < 0.0 {",
+    }],
+};
+
 pub static DIMMING: Guard = Guard {
     name: "absorption without 0 · ∞",
-    does: "a channel that a body does not absorb is left alone whatever the way, and black is the least number that \
-           has a logarithm, so that neither 0 · ∞ nor ∞ / ∞ is computed",
-    edits: &[
-        Edit {
-            file: "src/trace/path/walk.rs",
-            text: "if absorption == 0.0 { 1.0 } else",
-            instead: "if false { 1.0 } else",
-        },
-        Edit { file: "src/trace/material.rs", text: "channel.max(f32::MIN_POSITIVE).ln()", instead: "channel.ln()" },
-    ],
+    does: "a channel that a body does not absorb is left alone whatever the way, so that 0 · ∞ is not computed",
+    edits: &[Edit {
+        file: "src/trace/path/walk.rs",
+        text: "if absorption == 0.0 { 1.0 } else",
+        instead: "if false { 1.0 } else",
+    }],
 };

@@ -72,8 +72,8 @@ pub static SINE_INTEGRATED: Guard = Guard {
 
 pub static EMISSION_IN_BOUNDS: Guard = Guard {
     name: "emission in bounds",
-    does: "what a source gives off is finite, not negative and at most 1e18, whose square is still an f32; else it is \
-           left out by name",
+    does: "what a source gives off is finite, not negative and at most 1e25, which leaves the inverse square of 1e-6 m \
+           within f32; else it is left out by name",
     edits: &[
         Edit { file: "src/scene/validate.rs", text: "    if !is_radiance(emission) {\n", instead: "    if false {\n" },
         Edit {
