@@ -274,15 +274,6 @@ pub const CASES: &[Case] = &[
         check: || with_alpha(0.0, None).and_then(|()| nearly_without(1e-40)),
     },
     Case {
-        name: "alpha_of_1",
-        hard: "a surface that may let light pass and lets none",
-        elsewhere: "division by a chance of 0",
-        holds: "E is to 1e-6 what it is below an opaque one",
-        guard: &PRESENCE,
-        without: "light passes",
-        check: || with_alpha(1.0, Some(Alpha::Opaque)),
-    },
-    Case {
         name: "values_beyond_f16",
         hard: FILE,
         elsewhere: "∞ in the map: a white block where the sun comes in, a black one after filtering",

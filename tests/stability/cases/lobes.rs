@@ -277,15 +277,6 @@ pub const CASES: &[Case] = &[
         check: || phong(0.0, [1.0, 0.750, 0.587]),
     },
     Case {
-        name: "phong_of_exponent_1e6",
-        hard: "cosⁿ with n = 1e6: one unit in the last place of the cosine is 6 % of the lobe",
-        elsewhere: "a lobe in steps, or ∞",
-        holds: "its albedo, cos θ, at 0°, 60° and 80°, within 1 %",
-        guard: &PHONG,
-        without: "the lobe is made of steps",
-        check: || phong(1e6, [1.0, 0.5, 0.173_65]),
-    },
-    Case {
         name: "a_shading_normal_at_the_horizon",
         hard: "normals that lie in the surface: half of the directions are behind it",
         elsewhere: BLACK_OR_NAN,
