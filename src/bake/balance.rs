@@ -78,11 +78,15 @@ fn unmeasured_absorption(
         let triangle = (side % measured_area.len()) as u32;
         let normal = if side < measured_area.len() { tracer.normal(triangle) } else { -tracer.normal(triangle) };
         let weights = square_to_triangle(Vec2::new(u, v));
+        let absorption = Vec3::ONE - tracer.diffuse_albedo(triangle, weights.to_array());
+        if absorption == Vec3::ZERO {
+            // Nor may one follow light there: the inside of a white box keeps it.
+            return Some(DVec3::ZERO);
+        }
         let start = tracer.start_on_triangle(triangle, weights.to_array(), normal);
         let paths = Paths { key: combine(point_key, point), count: PATHS_PER_POINT, clamp: None };
         let estimate =
-            Estimate::gather(paths, cancel, |sobol, rays| tracer.diffuse_radiance(&start, sobol, transport, rays))?;
-        let absorption = Vec3::ONE - tracer.diffuse_albedo(triangle, weights.to_array());
+            Estimate::gather(paths, cancel, |sobol, tally| tracer.diffuse_radiance(&start, sobol, transport, tally))?;
         Some(absorption.as_dvec3() * estimate.mean)
     })?;
     let mean = work.iter().sum::<DVec3>() / POINTS as f64;

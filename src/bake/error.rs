@@ -1,7 +1,8 @@
 //! Why a bake did not happen, and what it left out, sorted by who must act.
 
+use super::gather::Estimate;
 use crate::scene::{Fault, Subject};
-use crate::trace::{Census, Effect, EffectSet, Transport};
+use crate::trace::{Census, Effect, EffectSet, MAX_VERTICES, Transport};
 use thiserror::Error;
 
 /// Why there is no result.
@@ -21,6 +22,18 @@ pub enum BakeError {
     NothingToBake {
         /// Why not.
         reason: String,
+    },
+    /// The scene: light in it neither leaves nor is absorbed, so that it would grow for ever.
+    #[error(
+        "light goes on for more than {surfaces} surfaces without an end, the last of them of material \"{material}\", \
+         because next to nothing is absorbed there and nothing gets out; lower the albedo (base colour) to 0.99 or \
+         less, let clear glass absorb a little, or set a cap on bounces"
+    )]
+    KeepsLight {
+        /// The material at which a path was given up.
+        material: String,
+        /// How many surfaces it had met.
+        surfaces: u32,
     },
     /// The settings.
     #[error("{setting}: {reason}")]
@@ -98,6 +111,26 @@ pub enum BakeWarning {
         /// How many such materials.
         materials: u64,
     },
+    /// Paths whose light was no number. Counted as dark.
+    #[error(
+        "{paths} paths brought light that is negative or not a finite number, and were left out, so that the light is \
+         too dark there; look for numbers near the largest that a computer holds, as in textures of emission"
+    )]
+    NotLight {
+        /// How many paths.
+        paths: u64,
+    },
+    /// Paths that nothing ended.
+    #[error(
+        "{paths} paths met {surfaces} surfaces without an end and were cut, so that light may be missing; somewhere \
+         next to nothing is absorbed and nothing gets out: lower the albedo (base colour) there to 0.99 or less"
+    )]
+    Endless {
+        /// How many paths.
+        paths: u64,
+        /// After how many surfaces.
+        surfaces: u32,
+    },
     /// Texel values beyond what a texture format can hold.
     #[error("{texels} texels are brighter than {format} can hold ({limit} cd/m²) and were clamped")]
     Clamped {
@@ -116,6 +149,15 @@ impl BakeWarning {
         let (lights, materials) = (census.unsized_lights(), census.smooth_materials());
         let unfindable = (lights > 0 && materials > 0).then_some(Self::Unfindable { lights, materials });
         Self::forced_off(transport, census.called()).into_iter().chain(unfindable)
+    }
+
+    /// What is to be said of paths.
+    pub(super) fn of_paths(estimates: &[Estimate]) -> impl Iterator<Item = Self> {
+        let sum = |count: fn(&Estimate) -> u64| estimates.iter().map(count).sum();
+        let (not_light, endless): (u64, u64) = (sum(|estimate| estimate.not_light), sum(|estimate| estimate.endless));
+        let not_light = (not_light > 0).then_some(Self::NotLight { paths: not_light });
+        let endless = (endless > 0).then_some(Self::Endless { paths: endless, surfaces: MAX_VERTICES });
+        not_light.into_iter().chain(endless)
     }
 
     /// The warning of effects that are called for and forced off, if there are any.

@@ -7,7 +7,7 @@
 use super::{CancelToken, RelativeError};
 use crate::math::combine;
 use crate::math::luminance;
-use crate::trace::Sobol;
+use crate::trace::{Sobol, Tally};
 use glam::{DVec3, Vec3};
 
 /// How many independently scrambled runs share the paths of each estimate; their spread is its standard error.
@@ -50,18 +50,22 @@ pub(super) struct Estimate {
     pub(super) rays: u64,
     /// What the clamp took from the mean, as luminance.
     pub(super) clamped: f64,
+    /// Paths whose light was no number, or negative. They count as dark.
+    pub(super) not_light: u64,
+    /// Paths that were cut because nothing ended them.
+    pub(super) endless: u64,
 }
 
 impl Estimate {
-    /// Runs the paths. `path` gives one path's value for its numbers and counts its rays. `None` if cancelled.
+    /// Runs the paths. `path` gives one path's value for its numbers and counts what it did. `None` if cancelled.
     pub(super) fn gather(
         paths: Paths,
         cancel: &CancelToken,
-        mut path: impl FnMut(&Sobol, &mut u64) -> Vec3,
+        mut path: impl FnMut(&Sobol, &mut Tally) -> Vec3,
     ) -> Option<Self> {
         let per_replicate = u64::from(paths.count.div_ceil(REPLICATES));
-        let mut rays = 0;
-        let mut taken = 0.0;
+        let mut tally = Tally::default();
+        let (mut taken, mut not_light) = (0.0, 0);
         let mut means = [DVec3::ZERO; REPLICATES as usize];
         for (replicate, mean) in means.iter_mut().enumerate() {
             let key = combine(paths.key, replicate as u64);
@@ -70,7 +74,11 @@ impl Estimate {
                 if index.is_multiple_of(CANCEL_INTERVAL) && cancel.is_cancelled() {
                     return None;
                 }
-                let value = path(&Sobol::new(key, index), &mut rays);
+                let value = path(&Sobol::new(key, index), &mut tally);
+                if !is_light(value) {
+                    not_light += 1;
+                    continue;
+                }
                 let kept = clamped(value, paths.clamp);
                 taken += luminance(value - kept);
                 sum += kept.as_dvec3();
@@ -83,7 +91,8 @@ impl Estimate {
         let variance_of_mean = squares / (count * (count - 1.0));
         let stderr = DVec3::from(variance_of_mean.to_array().map(f64::sqrt));
         let samples = per_replicate * u64::from(REPLICATES);
-        Some(Self { mean, stderr, samples, rays, clamped: taken / samples as f64 })
+        let Tally { rays, endless, .. } = tally;
+        Some(Self { mean, stderr, samples, rays, clamped: taken / samples as f64, not_light, endless })
     }
 
     /// Standard error over value, by luminance; `None` for a black estimate.
@@ -91,6 +100,11 @@ impl Estimate {
         let value = luminance(self.mean);
         (value > 0.0).then(|| luminance(self.stderr) / value)
     }
+}
+
+/// Whether a path's value can be light: one that is not would spoil the mean of all.
+fn is_light(value: Vec3) -> bool {
+    value.is_finite() && value.min_element() >= 0.0
 }
 
 /// A value with its hue and, in its strongest channel, at most `limit`.
@@ -142,7 +156,7 @@ mod tests {
 
     #[test]
     fn a_clamp_says_what_it_took() {
-        let bright = |sobol: &Sobol, _: &mut u64| {
+        let bright = |sobol: &Sobol, _: &mut Tally| {
             let one_in_four = sobol.draw(Dimensions::Start)[0] < 0.25;
             if one_in_four { Vec3::new(9.0, 9.0, 9.0) } else { Vec3::splat(1.0) }
         };
@@ -176,6 +190,19 @@ mod tests {
             }
         }
         assert!((368..=392).contains(&inside), "{inside} of 400 intervals hold the truth");
+    }
+
+    /// What is no light is left out and counted; the rest stands.
+    #[test]
+    fn what_is_no_light_is_left_out() {
+        for wrong in [Vec3::NAN, Vec3::INFINITY, Vec3::new(1.0, -1e-3, 1.0), Vec3::new(0.0, f32::NEG_INFINITY, 0.0)] {
+            let path = |sobol: &Sobol, _: &mut Tally| {
+                if sobol.draw(Dimensions::Start)[0] < 0.25 { wrong } else { Vec3::ONE }
+            };
+            let estimate = Estimate::gather(paths(3, 4096), &CancelToken::default(), path).unwrap();
+            assert!((estimate.mean - DVec3::splat(0.75)).length() < 1e-3, "{wrong}: {estimate:?}");
+            assert!(estimate.not_light.abs_diff(1024) < 4 && estimate.stderr.is_finite(), "{estimate:?}");
+        }
     }
 
     #[test]

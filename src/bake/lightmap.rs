@@ -3,6 +3,7 @@
 use super::atlas::{Atlas, Chart};
 use super::balance::energy_balance;
 use super::dilate::dilate;
+use super::endless::refuse_endless_texels;
 use super::gather::{Estimate, Paths};
 use super::sites::{Site, sites};
 use super::workers::Workers;
@@ -75,14 +76,15 @@ pub fn bake_lightmap(
     refuse_what_cannot_be_baked(&tracer, &faults)?;
     let atlas = Atlas::new(scene, &tracer, settings)?;
     let (sites, overlaps) = sites(scene, &tracer, &atlas, settings);
+    refuse_endless_texels(scene, &tracer, &settings.transport, &sites)?;
     let work = workers.gather(
         &sites,
         |site, cancel| {
             let paths = Paths { key: site.key, count: settings.samples_per_texel, clamp: settings.transport.clamp };
-            Estimate::gather(paths, cancel, |sobol, rays| {
+            Estimate::gather(paths, cancel, |sobol, tally| {
                 let [u, v, ..] = sobol.draw(Dimensions::Start);
                 let start = site.texel.start(&tracer, Vec2::new(u, v));
-                tracer.diffuse_radiance(&start, sobol, &settings.transport, rays)
+                tracer.diffuse_radiance(&start, sobol, &settings.transport, tally)
             })
         },
         Estimate::relative_stderr,

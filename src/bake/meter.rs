@@ -1,5 +1,6 @@
 //! A light meter: irradiance at points of the world, on surfaces or in mid-air.
 
+use super::endless::{refuse_endless_paths, spread};
 use super::gather::{Estimate, KeyKind, Paths, key};
 use super::workers::Workers;
 use super::{BakeError, BakeReport, BakeWarning, CancelToken, ProgressSink, Stage};
@@ -62,7 +63,8 @@ impl Default for MeterSettings {
 ///
 /// # Errors
 ///
-/// [`BakeError::Settings`] for a point that is no number or a normal without direction, [`BakeError::Cancelled`].
+/// [`BakeError::Settings`] for a point that is no number or a normal without direction,
+/// [`BakeError::KeepsLight`], [`BakeError::Cancelled`].
 pub fn measure_irradiance(
     scene: &Scene,
     points: &[MeterPoint],
@@ -85,14 +87,22 @@ pub fn measure_irradiance(
     let workers = Workers::new(*threads, progress, cancel)?;
     workers.announce(Stage::Prepare)?;
     let Compiled { tracer, faults, census } = Compiled::new(scene, transport);
+    refuse_endless_paths(scene, &tracer, transport, |probe, sobol, tally| {
+        if let Some(point) = spread(points, probe) {
+            let start = tracer.start_at(point.position, point.normal.normalize());
+            tracer.diffuse_radiance(&start, sobol, transport, tally);
+        }
+    })?;
     let work = workers.gather(
         points,
         |point, cancel| {
             let start = tracer.start_at(point.position, point.normal.normalize());
             let key = key(KeyKind::Point, transport.seed, bits(point.position), bits(point.normal));
-            Estimate::gather(Paths { key, count: *samples_per_point, clamp: transport.clamp }, cancel, |sobol, rays| {
-                tracer.diffuse_radiance(&start, sobol, transport, rays)
-            })
+            Estimate::gather(
+                Paths { key, count: *samples_per_point, clamp: transport.clamp },
+                cancel,
+                |sobol, tally| tracer.diffuse_radiance(&start, sobol, transport, tally),
+            )
         },
         Estimate::relative_stderr,
     )?;

@@ -14,6 +14,7 @@
 mod atlas;
 mod balance;
 mod dilate;
+mod endless;
 mod error;
 mod gather;
 mod lightmap;

@@ -1,5 +1,6 @@
 //! A path-traced picture: the reference that a baked scene is held against.
 
+use super::endless::{refuse_endless_paths, spread};
 use super::gather::{Estimate, KeyKind, Paths, key};
 use super::workers::Workers;
 use super::{BakeError, BakeReport, BakeWarning, CancelToken, ProgressSink, Stage};
@@ -44,7 +45,7 @@ pub struct Picture {
 ///
 /// # Errors
 ///
-/// [`BakeError::Settings`] for a size of zero, [`BakeError::Cancelled`].
+/// [`BakeError::Settings`] for a size of zero, [`BakeError::KeepsLight`], [`BakeError::Cancelled`].
 pub fn render_picture(
     scene: &Scene,
     camera: &Camera,
@@ -67,16 +68,23 @@ pub fn render_picture(
     let Compiled { tracer, faults, census } = Compiled::for_camera(scene, &settings.transport);
     let eye = Vec3::from(camera.world_from_camera.translation);
     let pixels: Vec<u32> = (0..width * height).collect();
+    refuse_endless_paths(scene, &tracer, &settings.transport, |probe, sobol, tally| {
+        if let Some(pixel) = spread(&pixels, probe) {
+            let middle = Vec2::new((pixel % width) as f32, (pixel / width) as f32) + 0.5;
+            let direction = ray_direction(camera, middle, [width, height]);
+            tracer.camera_radiance(eye, direction, sobol, &settings.transport, tally);
+        }
+    })?;
     let work = workers.gather(
         &pixels,
         |&pixel, cancel| {
             let corner = Vec2::new((pixel % width) as f32, (pixel / width) as f32);
             let key = key(KeyKind::Pixel, settings.transport.seed, 0, u64::from(pixel));
             let paths = Paths { key, count: settings.samples_per_pixel, clamp: settings.transport.clamp };
-            Estimate::gather(paths, cancel, |sobol, rays| {
+            Estimate::gather(paths, cancel, |sobol, tally| {
                 let [u, v, ..] = sobol.draw(Dimensions::Start);
                 let direction = ray_direction(camera, corner + Vec2::new(u, v), [width, height]);
-                tracer.camera_radiance(eye, direction, sobol, &settings.transport, rays)
+                tracer.camera_radiance(eye, direction, sobol, &settings.transport, tally)
             })
         },
         Estimate::relative_stderr,

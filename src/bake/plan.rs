@@ -4,6 +4,7 @@ mod price;
 mod reasons;
 
 use super::atlas::Atlas;
+use super::endless::refuse_endless_texels;
 use super::lightmap::refuse_what_cannot_be_baked;
 use super::sites::{Site, sites};
 use super::workers::Workers;
@@ -68,6 +69,7 @@ impl BakePlan {
         refuse_what_cannot_be_baked(&tracer, &faults)?;
         let atlas = Atlas::new(scene, &tracer, settings)?;
         let (sites, overlaps) = sites(scene, &tracer, &atlas, settings);
+        refuse_endless_texels(scene, &tracer, &settings.transport, &sites)?;
         let mut warnings: Vec<BakeWarning> = faults.into_iter().map(BakeWarning::from).collect();
         warnings.extend(overlaps);
         warnings.extend(BakeWarning::of_transport(&settings.transport, &census));

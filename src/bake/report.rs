@@ -64,7 +64,7 @@ impl BakeReport {
             clamped_light: clamped_share(&work.results, transport.clamp),
             forced: transport.effects,
             clamped: 0,
-            warnings: warnings.collect(),
+            warnings: warnings.chain(BakeWarning::of_paths(&work.results)).collect(),
         }
     }
 }

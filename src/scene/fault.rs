@@ -176,6 +176,14 @@ pub enum FaultKind {
     /// An emission that is negative or not finite.
     #[error("has an emission that is negative or not a finite number; correct it")]
     BadEmission,
+    /// An emission with which light could not be computed.
+    #[error("has an emission of {value:e}, above {limit:e}, where numbers end; give it less")]
+    TooBright {
+        /// Its strongest channel [cd/m², cd or lx].
+        value: f32,
+        /// The most that it may be, in the same unit.
+        limit: f32,
+    },
     /// A range that is not above zero; NaN would spread to every texel.
     #[error("has a range of {range} m, so it gives no light; give it one above zero")]
     BadRange {
@@ -231,6 +239,19 @@ pub enum FaultKind {
         column: usize,
         /// Its row.
         row: usize,
+    },
+    /// A pixel with which light could not be computed.
+    #[error(
+        "has a pixel brighter than {limit:e} cd/m², where numbers end (the first at column {column}, row {row} from \
+         the top left); correct it"
+    )]
+    TooBrightPixel {
+        /// Its column.
+        column: usize,
+        /// Its row.
+        row: usize,
+        /// The most that it may be [cd/m²].
+        limit: f32,
     },
     /// A rotation that is none.
     #[error("has a rotation that is not a finite quaternion of length 1; correct it")]

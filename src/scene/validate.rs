@@ -46,9 +46,7 @@ impl Scene {
             }
             blame(Subject::Light(light.name().to_owned()), kinds);
         }
-        if !is_radiance(self.sky_radiance) {
-            blame(Subject::Sky, vec![FaultKind::BadEmission]);
-        }
+        blame(Subject::Sky, emission_fault(self.sky_radiance).into_iter().collect());
         if let Some(map) = &self.environment {
             blame(Subject::Environment(map.name.clone()), map.faults());
         }
@@ -150,6 +148,20 @@ fn too_far(mesh: &Mesh, transform: &Affine3A) -> Option<FaultKind> {
     let distance = |position: &Vec3| (matrix * position.as_dvec3() + translation).abs().max_element();
     let distance = mesh.positions.iter().map(distance).find(|distance| distance.is_finite() && *distance > FARTHEST)?;
     Some(FaultKind::TooFar { distance, limit: FARTHEST })
+}
+
+/// The most that a source may give off [cd/m², cd or lx]. The largest `f32` is 3·10³⁸; this leaves room for the radiance
+/// of the smallest sun, 3.2·10⁹ times its illuminance, and for the inverse square of a micrometre. The sun's own disc
+/// has 1.6·10⁹ cd/m².
+const MAX_EMISSION: f32 = 1e25;
+
+/// What is wrong with an emission, if anything is.
+fn emission_fault(emission: Vec3) -> Option<FaultKind> {
+    if !is_radiance(emission) {
+        return Some(FaultKind::BadEmission);
+    }
+    let (value, limit) = (emission.max_element(), MAX_EMISSION);
+    (value > limit).then_some(FaultKind::TooBright { value, limit })
 }
 
 fn is_radiance(radiance: Vec3) -> bool {

@@ -152,9 +152,10 @@ impl Attributes {
 #[inline]
 fn mix<T>(a: T, b: T, c: T, [second, third]: [f32; 2]) -> T
 where
-    T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f32, Output = T>,
+    T: Copy + std::ops::Add<Output = T> + std::ops::Sub<Output = T> + std::ops::Mul<f32, Output = T>,
 {
-    a * (1.0 - second - third) + b * second + c * third
+    // By differences, so that the error is a share of them: coordinates a million units out keep their fraction.
+    a + (b - a) * second + (c - a) * third
 }
 
 fn extend<T: Copy>(list: &mut Vec<T>, values: Option<&[T]>, count: usize, default: T) {

@@ -1,7 +1,9 @@
-//! Whether light can leave a scene, found by following it forwards from its sources.
+//! Whether light can leave a scene, found by following it forwards from its sources, and whether it ends at all.
 
+use super::path::Tally;
 use super::sampler::{Dimensions, Sampler, Sobol};
 use super::tracer::Tracer;
+use super::transport::Transport;
 use crate::math::{Frame, combine, square_to_cosine_hemisphere};
 use glam::{Vec2, Vec3};
 
@@ -15,6 +17,15 @@ impl Tracer {
         !self.lights.is_empty()
             && !self.lights.has_distant()
             && (0..walks).all(|walk| self.stays_inside(&Sobol::new(key, walk)))
+    }
+
+    /// Follows a path from a source until it ends, as one from a receiver is followed: by what surfaces really do.
+    pub(crate) fn follow_from_source(&self, sampler: &Sobol, transport: &Transport, tally: &mut Tally) {
+        let [u_choice, ..] = sampler.draw(Dimensions::Start);
+        let departure = self.lights.depart(u_choice, sampler.draw(Dimensions::Light { vertex: 0 }));
+        if let Some((origin, direction)) = departure {
+            self.radiance_along(origin, direction, sampler, transport, tally);
+        }
     }
 
     fn stays_inside(&self, sampler: &Sobol) -> bool {

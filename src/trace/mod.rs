@@ -31,7 +31,7 @@ pub use aim::Aim;
 pub(crate) use census::{Census, effect_of};
 pub(crate) use compile::Compiled;
 pub use effects::{Effect, EffectSet, ForcedEffects};
-pub(crate) use path::PathStart;
+pub(crate) use path::{MAX_VERTICES, PathStart, Tally};
 pub(crate) use sampler::{Dimensions, Sampler, Sobol};
 pub(crate) use tracer::Receiver;
 pub use tracer::{RayHit, Tracer};

@@ -4,7 +4,8 @@
 //! point as the path's first vertex and throughput β = 1, every vertex adds two samples of the light that reaches it
 //! straight from sources (Veach and Guibas 1995): a point on a source, and the direction in which the path goes on.
 //! A path ends by Russian roulette (Arvo and Kirk 1990), whose chance of survival is at most 1 and depends on β alone,
-//! so that it loses no light; there is no cap on bounces but one that a person asks for.
+//! so that it loses no light; there is no cap on bounces but one that a person asks for. Where nothing is ever
+//! absorbed no chance would end it: then [`MAX_VERTICES`] does, which is counted.
 //!
 //! A surface that is there in part is met or passed at random; a path that passes it has no vertex there, so that the
 //! weights of its samples stay those of the vertex before, and a shadow ray is dimmed by the share that passes. In a
@@ -24,18 +25,30 @@ use super::tracer::Tracer;
 use super::transport::Transport;
 use glam::Vec3;
 use vertex::Ray;
+pub(crate) use walk::MAX_VERTICES;
 use walk::Walk;
 
+/// What paths did.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Tally {
+    /// Rays traced.
+    pub(crate) rays: u64,
+    /// Paths that were cut at [`MAX_VERTICES`].
+    pub(crate) endless: u64,
+    /// The number of the material at which the last of those was.
+    pub(crate) kept_by: Option<u32>,
+}
+
 impl Tracer {
-    /// One sample of E/π at a start [cd/m²]. Adds the rays that it traced to `rays`.
+    /// One sample of E/π at a start [cd/m²]. Adds what it did to `tally`.
     pub(crate) fn diffuse_radiance(
         &self,
         start: &PathStart,
         sampler: &impl Sampler,
         transport: &Transport,
-        rays: &mut u64,
+        tally: &mut Tally,
     ) -> Vec3 {
-        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, rays).receive(start))
+        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).receive(start))
     }
 
     /// Radiance that arrives against `direction` at `origin`, a point of the world, along a camera's ray [cd/m²]. Lights
@@ -46,10 +59,22 @@ impl Tracer {
         direction: Vec3,
         sampler: &impl Sampler,
         transport: &Transport,
-        rays: &mut u64,
+        tally: &mut Tally,
     ) -> Vec3 {
-        let ray = Ray::of_camera(self.traced_from_world.point(origin), direction);
-        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, rays).look_along(ray))
+        self.radiance_along(self.traced_from_world.point(origin), direction, sampler, transport, tally)
+    }
+
+    /// The same against a ray in the traced frame.
+    pub(super) fn radiance_along(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        sampler: &impl Sampler,
+        transport: &Transport,
+        tally: &mut Tally,
+    ) -> Vec3 {
+        let ray = Ray::of_camera(origin, direction);
+        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).look_along(ray))
     }
 }
 

@@ -2,7 +2,8 @@
 
 use crate::case::Verdict;
 use crate::common::meter::mean;
-use bevy_kiln::bake::{BakeSettings, CancelToken, Lightmap, MeterPoint, MeterReading, MeterSettings};
+use bevy_kiln::bake::{BakeReport, BakeSettings, BakeWarning, CancelToken, Lightmap};
+use bevy_kiln::bake::{MeterPoint, MeterReading, MeterSettings};
 use bevy_kiln::bake::{bake_lightmap, measure_irradiance};
 use bevy_kiln::math::luminance;
 use bevy_kiln::scene::Scene;
@@ -23,7 +24,9 @@ pub fn light_by(
 ) -> Result<Vec<MeterReading>, String> {
     let settings = MeterSettings { transport, samples_per_point: samples, threads: None };
     let measured = measure_irradiance(scene, points, &settings, &(), &CancelToken::default());
-    let readings = measured.map_err(|error| error.to_string())?.readings;
+    let measured = measured.map_err(|error| error.to_string())?;
+    no_path_was_lost(&measured.report)?;
+    let readings = measured.readings;
     for (index, reading) in readings.iter().enumerate() {
         if !is_light(reading.irradiance) || !is_light(reading.stderr) {
             return Err(format!("point {index} reads {} ± {}", shown(reading.irradiance), shown(reading.stderr)));
@@ -35,6 +38,7 @@ pub fn light_by(
 /// A lightmap; an error if any of it is no number, or negative.
 pub fn baked(scene: &Scene, settings: &BakeSettings) -> Result<Lightmap, String> {
     let lightmap = bake_lightmap(scene, settings, &(), &CancelToken::default()).map_err(|error| error.to_string())?;
+    no_path_was_lost(&lightmap.report)?;
     for page in &lightmap.pages {
         for value in page.radiance.iter().chain(&page.raw).chain(&page.stderr) {
             if !is_light(value.as_dvec3()) {
@@ -46,6 +50,13 @@ pub fn baked(scene: &Scene, settings: &BakeSettings) -> Result<Lightmap, String>
         }
     }
     Ok(lightmap)
+}
+
+/// Whether every path ended by itself and brought light: what is no number is left out of a mean, which would hide it.
+pub fn no_path_was_lost(report: &BakeReport) -> Verdict {
+    let is_loss =
+        |warning: &&BakeWarning| matches!(warning, BakeWarning::NotLight { .. } | BakeWarning::Endless { .. });
+    report.warnings.iter().find(is_loss).map_or(Ok(()), |warning| Err(warning.to_string()))
 }
 
 fn is_light(value: DVec3) -> bool {
@@ -156,6 +167,7 @@ pub fn rejects_what_is_wrong() -> Verdict {
         same_but_for_rounding(&[reading(f64::NAN, 0.1)], &[reading(1.0, 0.1)], 1e-6),
         same_but_for_rounding(&[], &[], 1e-6),
         is_refused(&Scene::default(), "mesh"),
+        no_path_was_lost(&BakeReport { warnings: vec![BakeWarning::NotLight { paths: 1 }], ..BakeReport::default() }),
     ];
     for verdict in sound {
         verdict?;

@@ -16,6 +16,7 @@ mod judge;
 mod page;
 mod removal;
 mod seen;
+mod things;
 mod worlds;
 
 use libtest_mimic::{Arguments, Failed, Trial};

@@ -81,10 +81,10 @@ impl<'a> Pilot<'a> {
         let clock = Instant::now();
         let estimates = self.workers.gather_quietly(&pilot, |site, cancel| {
             let paths = Paths { key: site.key, count: paths as u32, clamp: transport.clamp };
-            Estimate::gather(paths, cancel, |sobol, rays| {
+            Estimate::gather(paths, cancel, |sobol, tally| {
                 let [u, v, ..] = sobol.draw(Dimensions::Start);
                 let start = site.texel.start(tracer, Vec2::new(u, v));
-                tracer.diffuse_radiance(&start, sobol, transport, rays)
+                tracer.diffuse_radiance(&start, sobol, transport, tally)
             })
         })?;
         Ok((estimates, clock.elapsed().as_secs_f64()))

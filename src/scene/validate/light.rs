@@ -1,7 +1,7 @@
 //! What can be wrong with lights and with the picture of the sky.
 
 use super::super::{DirectionalLight, EnvironmentMap, FaultKind, Light, PointLight, RectLight, SpotLight};
-use super::{is_invertible, is_radiance};
+use super::{MAX_EMISSION, emission_fault, is_invertible, is_radiance};
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -25,8 +25,13 @@ impl EnvironmentMap {
             return vec![FaultKind::BadSize { width, height, count }];
         }
         let mut kinds = Vec::new();
+        let place = |index: usize| (index % width as usize, index / width as usize);
         if let Some(index) = self.radiance.iter().position(|&radiance| !is_radiance(radiance)) {
-            kinds.push(FaultKind::BadPixel { column: index % width as usize, row: index / width as usize });
+            let (column, row) = place(index);
+            kinds.push(FaultKind::BadPixel { column, row });
+        } else if let Some(index) = self.radiance.iter().position(|radiance| radiance.max_element() > MAX_EMISSION) {
+            let (column, row) = place(index);
+            kinds.push(FaultKind::TooBrightPixel { column, row, limit: MAX_EMISSION });
         }
         // Not exactly 1: a product of rotations never is.
         if !(self.world_from_map.is_finite() && (self.world_from_map.length() - 1.0).abs() < 1e-3) {
@@ -82,7 +87,7 @@ fn directional_faults(light: &DirectionalLight) -> Vec<FaultKind> {
 }
 
 fn emission_faults(emission: Vec3) -> Vec<FaultKind> {
-    if is_radiance(emission) { Vec::new() } else { vec![FaultKind::BadEmission] }
+    emission_fault(emission).into_iter().collect()
 }
 
 fn range_fault(range: Option<f32>) -> Option<FaultKind> {
@@ -167,6 +172,8 @@ mod tests {
     fn each_fault_of_a_light_is_named() {
         let point = |light| Light::Point(light);
         assert_light(point(PointLight { intensity: Vec3::NEG_X, ..bulb() }), "has an emission");
+        let sentence = "has an emission of 2e25, above 1e25";
+        assert_light(point(PointLight { intensity: Vec3::new(0.0, 2e25, 1.0), ..bulb() }), sentence);
         assert_light(point(PointLight { position: Vec3::NAN, ..bulb() }), "has a position");
         assert_light(point(PointLight { radius: -1.0, ..bulb() }), "has a radius of -1 m");
         assert_light(point(PointLight { radius: f32::NAN, ..bulb() }), "has a radius of NaN m");
@@ -198,6 +205,10 @@ mod tests {
             let sentence = "has a pixel that is negative or not a finite number (the first at column 1, row 1";
             assert_sky(EnvironmentMap { radiance: radiance.into(), ..sky() }, sentence);
         }
+        let mut radiance = vec![Vec3::splat(MAX_EMISSION); 6];
+        radiance[5].y = MAX_EMISSION.next_up();
+        let sentence = "has a pixel brighter than 1e25 cd/m², where numbers end (the first at column 2, row 1";
+        assert_sky(EnvironmentMap { radiance: radiance.into(), ..sky() }, sentence);
         for rotation in [Quat::NAN, Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), Quat::from_xyzw(0.0, 2.0, 0.0, 0.0)] {
             assert_sky(EnvironmentMap { world_from_map: rotation, ..sky() }, "has a rotation");
         }

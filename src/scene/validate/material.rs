@@ -1,6 +1,6 @@
 //! The faults of materials and of the textures that they refer to.
 
-use super::is_radiance;
+use super::emission_fault;
 use crate::scene::{Alpha, FaultKind, Interior, Material, Scattering, Scene, Standard, Texels, Texture, TextureRef};
 use glam::Vec3;
 
@@ -11,9 +11,7 @@ impl Material {
         if !(is_share(self.base_colour.truncate()) && (0.0..=1.0).contains(&self.base_colour.w)) {
             kinds.push(FaultKind::ColourOutOfRange);
         }
-        if !is_radiance(self.emitted_radiance) {
-            kinds.push(FaultKind::BadEmission);
-        }
+        kinds.extend(emission_fault(self.emitted_radiance));
         if !self.uv_transform.is_finite() {
             kinds.push(FaultKind::BadUvTransform);
         }

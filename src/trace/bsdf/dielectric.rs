@@ -47,6 +47,12 @@ impl<'a> Dielectric<'a> {
         self.rough.is_some()
     }
 
+    /// By how much radiance is more concentrated behind the interface than before it.
+    #[inline]
+    pub(super) fn concentration(&self) -> f32 {
+        self.smooth.eta * self.smooth.eta
+    }
+
     /// Arriving light that leaves again, as energy: an estimate, but right where nothing is tinted.
     #[inline]
     pub(super) fn albedo(&self, wo: Vec3) -> Vec3 {
@@ -120,7 +126,8 @@ impl<'a> Dielectric<'a> {
     /// steeply than the surface.
     #[inline]
     fn albedo_of_once(&self, rough: &Rough, wo: Vec3) -> Vec3 {
-        self.smooth.albedo(Vec3::new(0.0, 0.0, rough.surface.slant(wo).min(1.0)))
+        let cos = rough.surface.slant(wo).min(1.0);
+        self.smooth.albedo(Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos))
     }
 
     /// The chance to sample what met more than one facet: its share of the whole.

@@ -182,6 +182,16 @@ impl Bsdf<'_> {
         }
     }
 
+    /// By how much radiance is more concentrated behind the surface than before it: the index squared.
+    #[inline]
+    pub(super) fn concentration(&self) -> f32 {
+        match self {
+            Self::None | Self::Lambert(_) | Self::Mirror(_) | Self::Phong(_) => 1.0,
+            Self::Refraction(refraction) => refraction.eta * refraction.eta,
+            Self::Standard(standard) => standard.concentration(),
+        }
+    }
+
     /// About what is scattered over what arrives, as energy, where the light goes to or comes from `wo`.
     #[inline]
     pub(super) fn albedo(&self, wo: Vec3) -> Vec3 {

@@ -3,7 +3,7 @@
 //! What crosses is radiance, which is concentrated where the index is higher: L/n² is what stays the same (Nicodemus
 //! 1963). A path that goes on into a medium `eta` times as dense finds light that weighs 1/eta² here.
 
-use super::fresnel::{refract, refract_at};
+use super::fresnel::{Refracted, refract, refract_from};
 use super::ggx::mirror;
 use super::{BsdfSample, Density};
 use glam::Vec3;
@@ -24,7 +24,7 @@ impl Refraction {
         if wo.z <= 0.0 {
             return None;
         }
-        let refracted = refract_at(wo.z, self.eta);
+        let refracted = self.refracted(wo);
         let chance = reflection_chance(refracted.reflectance, self.tint);
         if u < chance {
             let weight = Vec3::splat(refracted.reflectance / chance);
@@ -36,10 +36,15 @@ impl Refraction {
         (weight != Vec3::ZERO && wi.z < 0.0).then_some(BsdfSample { wi, weight, density: Density::Delta })
     }
 
+    #[inline]
+    fn refracted(&self, wo: Vec3) -> Refracted {
+        refract_from(wo.z, wo.x * wo.x + wo.y * wo.y, self.eta)
+    }
+
     /// Arriving light that leaves again, as energy: without the factor that follows the index.
     #[inline]
     pub(super) fn albedo(&self, wo: Vec3) -> Vec3 {
-        let reflectance = refract_at(wo.z, self.eta).reflectance;
+        let reflectance = self.refracted(wo).reflectance;
         Vec3::splat(reflectance) + self.tint * (1.0 - reflectance)
     }
 }

@@ -152,6 +152,15 @@ impl<'a> Standard<'a> {
         self.coat.is_smooth_lobe() || self.transmits() || self.clear < 1.0 && opaque
     }
 
+    /// By how much radiance is more concentrated behind the surface than before it.
+    #[inline]
+    pub(super) fn concentration(&self) -> f32 {
+        match &self.glass {
+            Glass::Body(glass) if self.clear > 0.0 => glass.concentration(),
+            _ => 1.0,
+        }
+    }
+
     /// Whether light from the far side is spread out.
     #[inline]
     pub(super) fn transmits(&self) -> bool {

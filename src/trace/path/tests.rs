@@ -1,11 +1,11 @@
 //! The estimator as a whole, in furnaces, whose answer is known: a closed room of one albedo ρ whose walls all glow
 //! with Le shows Le / (1 − ρ) in every direction. And that the check which says so would notice if it did not.
 
-use super::PathStart;
-use super::walk::{MAX_SURVIVAL, ROULETTE_THROUGHPUT, survival_probability};
+use super::walk::{ROULETTE_THROUGHPUT, survival_probability};
+use super::{PathStart, Tally};
 use crate::math::testing::{Random, mean_and_error, mean_within};
 use crate::math::{Frame, combine, square_to_cosine_hemisphere, square_to_triangle};
-use crate::scene::Material;
+use crate::scene::{Interior, Material, Scattering, Standard};
 use crate::trace::light::{End, LightContext};
 use crate::trace::mis::power_heuristic;
 use crate::trace::sampler::{Dimensions, Sampler};
@@ -51,8 +51,9 @@ fn the_furnace() {
     for (albedo, estimator, paths) in cases {
         let (tracer, truth) = furnace(albedo);
         let transport = Transport { estimator, ..Transport::default() };
-        let (mean, error) =
-            measure(&tracer, paths, |start, sampler| tracer.diffuse_radiance(start, sampler, &transport, &mut 0));
+        let (mean, error) = measure(&tracer, paths, |start, sampler| {
+            tracer.diffuse_radiance(start, sampler, &transport, &mut Tally::default())
+        });
         let found = mean_within(mean, error, truth, TOLERANCE * truth);
         assert_eq!(found, Ok(()), "ρ = {albedo}, {estimator:?}");
     }
@@ -154,7 +155,7 @@ fn the_second_opinion_is_the_estimator() {
         let [u, v, ..] = sampler.draw(Dimensions::Start);
         let weights = [0.5 * u, 0.5 * v];
         let start = tracer.start_on_triangle((index % 12) as u32, weights, tracer.normal((index % 12) as u32));
-        let one = tracer.diffuse_radiance(&start, &sampler, &Transport::default(), &mut 0).y;
+        let one = tracer.diffuse_radiance(&start, &sampler, &Transport::default(), &mut Tally::default()).y;
         let other = second_opinion(&tracer, &start, &sampler, Fault::None).y;
         assert!((one - other).abs() < 1e-4 * one, "{one} {other}");
     }
@@ -167,14 +168,14 @@ fn roulette_loses_nothing() {
     for step in 1..200 {
         let throughput = Vec3::new(0.3, 1.0, 0.7) * 0.02 * step as f32;
         let survival = survival_probability(throughput.max_element());
-        assert!(survival > 0.0 && survival <= MAX_SURVIVAL, "{throughput}: {survival}");
+        assert!(survival > 0.0 && survival <= 1.0, "{throughput}: {survival}");
         // One number in each of a thousand equal intervals.
         let survivor = |index| if (index as f32 + random.unit()) / 1000.0 < survival { 1.0 / survival } else { 0.0 };
         let mean = (0..1000).map(survivor).sum::<f32>() / 1000.0;
         assert!((mean - 1.0).abs() <= 0.0011 / survival, "{throughput}: {mean}");
     }
     assert_eq!(survival_probability(0.0), 0.0);
-    assert_eq!(survival_probability(1e9), MAX_SURVIVAL);
+    assert_eq!(survival_probability(1e9), 1.0);
     let dim = survival_probability(0.01);
     assert!((survival_probability(0.02) - 2.0 * dim).abs() < 1e-6);
 }
@@ -198,4 +199,48 @@ fn a_meter_in_a_narrow_gap_lies_on_its_own_plate() {
             }
         }
     }
+}
+
+/// Between walls that absorb nothing a path would never end: it is cut, and says by which material.
+#[test]
+fn a_path_that_nothing_ends_is_cut_and_counted() {
+    let tracer = Shape::cube().tracer(Affine3A::IDENTITY);
+    let start = tracer.start_on_triangle(0, [0.3, 0.4], tracer.normal(0));
+    let mut tally = Tally::default();
+    let value = tracer.diffuse_radiance(&start, &Sobol::new(1, 0), &Transport::default(), &mut tally);
+    assert_eq!((value, tally.endless, tally.kept_by), (Vec3::ZERO, 1, Some(0)));
+    assert_eq!(tally.rays, u64::from(super::MAX_VERTICES));
+    let capped = Transport { max_bounces: Some(100), ..Transport::default() };
+    let mut tally = Tally::default();
+    tracer.diffuse_radiance(&start, &Sobol::new(1, 0), &capped, &mut tally);
+    assert_eq!((tally.endless, tally.rays), (0, 101));
+}
+
+/// A start that lies in a body learns so at the first surface that it meets from behind, and not at one from before.
+#[test]
+fn a_path_that_starts_in_a_body_is_dimmed_from_its_start() {
+    let attenuation = |colour: f32| {
+        let interior = Interior::Volume { attenuation_colour: Vec3::splat(colour), attenuation_distance: 1e-3 };
+        let glass = Standard {
+            specular_transmission: 1.0,
+            perceptual_roughness: 0.0,
+            ior: 1.0,
+            interior,
+            ..Standard::default()
+        };
+        let material = Material::scattering("glass", Vec3::ONE, Scattering::Standard(Box::new(glass)));
+        // The cube faces inwards: mirrored, outwards.
+        let mut scene = Shape::cube().moved(|v| Vec3::new(1.0 - v.x, v.y, v.z)).scene(material, Affine3A::IDENTITY);
+        scene.sky_radiance = Vec3::ONE;
+        Tracer::new(&scene)
+    };
+    let value = |tracer: &Tracer, position: Vec3| {
+        let start = PathStart::free(position, Vec3::Y);
+        tracer.diffuse_radiance(&start, &Sobol::new(3, 5), &Transport::default(), &mut Tally::default())
+    };
+    let (clear, dark) = (attenuation(1.0), attenuation(0.5));
+    let (inside, above) = (Vec3::splat(0.5), Vec3::new(0.5, 2.0, 0.5));
+    assert!((value(&clear, inside) - 1.0).length() < 1e-5, "{}", value(&clear, inside));
+    assert_eq!(value(&dark, inside), Vec3::ZERO);
+    assert_eq!(value(&dark, above), Vec3::ONE);
 }

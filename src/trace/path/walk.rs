@@ -1,12 +1,14 @@
 //! One path: from a vertex along a ray to the next vertex, and what light it finds on the way.
 
-use super::PathStart;
 use super::vertex::{Ray, Vertex};
+mod light;
+
+use super::{PathStart, Tally};
 use crate::math::{Frame, Portable};
 use crate::trace::accel::Hit;
 use crate::trace::bsdf::{Bsdf, Density, Lambert};
-use crate::trace::kernel::{DISTANT, LAYERED, PASSING, TEXTURED};
-use crate::trace::light::{End, LightContext, Way};
+use crate::trace::kernel::{DISTANT, LAYERED, PASSING};
+use crate::trace::light::{LightContext, Way};
 use crate::trace::material::Surface;
 use crate::trace::mis::power_heuristic;
 use crate::trace::sampler::{Dimensions, Sampler};
@@ -23,8 +25,11 @@ use glam::{Vec2, Vec3};
 /// gains, the second a white one; this takes most of both.
 pub(super) const ROULETTE_THROUGHPUT: f32 = 0.15;
 
-/// The best chance of survival at any bounce. Ends paths between surfaces that absorb nothing.
-pub(super) const MAX_SURVIVAL: f32 = 0.998;
+/// Vertices after which a path is cut, and counted. Where a share ε of what a path carries is lost at each vertex, it
+/// lives on with the chance 1 while it carries more than [`ROULETTE_THROUGHPUT`] and then with 1 − ε at each vertex:
+/// it reaches this number with a chance of (1 − ε)ⁿ / 0.15, which is below 10⁻¹² from ε = 4.5·10⁻⁴ upwards (and
+/// 2·10⁻²⁸ between walls of albedo 0.999). What keeps more has no steady state that a bake would reach.
+pub(crate) const MAX_VERTICES: u32 = 1 << 16;
 
 /// The largest chance to pass a surface that is there at all, so that what it shows is not missed.
 const MAX_PASSING: f32 = 0.999;
@@ -34,7 +39,7 @@ pub(super) struct Walk<'t, const K: u32, S> {
     tracer: &'t Tracer,
     sampler: &'t S,
     transport: &'t Transport,
-    rays: &'t mut u64,
+    tally: &'t mut Tally,
     radiance: Vec3,
     throughput: Vec3,
     max_bounces: Option<u32>,
@@ -42,13 +47,33 @@ pub(super) struct Walk<'t, const K: u32, S> {
     number: u32,
     /// How much the body that the path is in absorbs [1/m]; zero outside.
     absorption: Vec3,
+    /// Whether it is known what the path is in: one that starts in a body learns it where it meets that from behind.
+    knows_body: bool,
+    /// How much radiance is concentrated where the path began, over where it is: the index squared, which comes back
+    /// on the way out and is no loss.
+    concentration: f32,
+    /// The triangle that it is at.
+    triangle: u32,
 }
 
 impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
-    pub(super) fn new(tracer: &'t Tracer, sampler: &'t S, transport: &'t Transport, rays: &'t mut u64) -> Self {
+    pub(super) fn new(tracer: &'t Tracer, sampler: &'t S, transport: &'t Transport, tally: &'t mut Tally) -> Self {
         let (radiance, throughput, absorption) = (Vec3::ZERO, Vec3::ONE, Vec3::ZERO);
         let max_bounces = tracer.max_bounces(transport);
-        Self { tracer, sampler, transport, rays, radiance, throughput, max_bounces, number: 0, absorption }
+        Self {
+            tracer,
+            sampler,
+            transport,
+            tally,
+            radiance,
+            throughput,
+            max_bounces,
+            number: 0,
+            absorption,
+            knows_body: false,
+            concentration: 1.0,
+            triangle: 0,
+        }
     }
 
     /// E/π at a receiver, by one path.
@@ -84,6 +109,11 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
                 None => return,
             }
             self.number += 1;
+            if self.number >= MAX_VERTICES {
+                self.tally.endless += 1;
+                self.tally.kept_by = Some(self.tracer.surface_of[self.triangle as usize]);
+                return;
+            }
         }
     }
 
@@ -113,6 +143,8 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             && let Some(absorption) = vertex.beyond
         {
             self.absorption = absorption;
+            self.knows_body = true;
+            self.concentration *= vertex.bsdf.concentration();
         }
         self.throughput *= sample.weight;
         Some(Ray { origin, direction, context, density: sample.density, survival: Some(u_survive) })
@@ -132,7 +164,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             (_, Some(_)) => self.sampler.draw(Dimensions::Light { vertex: self.number })[3],
         };
         let (hit, surface) = loop {
-            *self.rays += 1;
+            self.tally.rays += 1;
             let hit = tracer.accel.closest(origin, ray.direction, f32::INFINITY);
             let end = hit.map_or(f32::INFINITY, |hit| hit.t);
             if ray.survival.is_some() && tracer.lights.has_passable() {
@@ -142,8 +174,11 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
                 self.escape(ray);
                 return None;
             };
-            self.absorb(hit.t);
             let surface = tracer.surface(hit.triangle);
+            if K & LAYERED != 0 && !self.knows_body {
+                self.learn_body(hit, surface, ray.direction);
+            }
+            self.absorb(hit.t);
             if K & PASSING == 0 || !surface.passes {
                 break (hit, surface);
             }
@@ -176,6 +211,12 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         let vertex = self.vertex(shape, place, ray);
         let albedo = if K & LAYERED == 0 { vertex.lambert.albedo } else { vertex.bsdf.albedo(vertex.wo) };
         let carried = (self.throughput * albedo).max_element();
+        let carried = if K & LAYERED == 0 { carried } else { carried * self.concentration };
+        if !carried.is_finite() {
+            // A path that has lost its number is given up as a whole, and counted where it is added up.
+            self.radiance = Vec3::NAN;
+            return None;
+        }
         if carried <= 0.0 {
             return None;
         }
@@ -186,6 +227,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             }
             self.throughput /= survival;
         }
+        self.triangle = hit.triangle;
         Some(vertex)
     }
 
@@ -247,83 +289,6 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         }
     }
 
-    /// Radiance that a vertex sends on from one point on a source.
-    #[inline]
-    fn light_sample(&mut self, vertex: &Vertex<'t>, context: &LightContext) -> Vec3 {
-        let [u, v, u_choice, _] = self.sampler.draw(Dimensions::Light { vertex: self.number });
-        let lights = &self.tracer.lights;
-        let Some(sample) = lights.sample(context, Vec2::new(u, v), u_choice) else {
-            return Vec3::ZERO;
-        };
-        let estimator = self.transport.estimator;
-        if estimator == Estimator::Bsdf && sample.pdf.is_some() {
-            return Vec3::ZERO;
-        }
-        let wi = vertex.frame.local_from_world(sample.wi);
-        let (scattering, scattering_pdf) = if K & LAYERED == 0 {
-            (vertex.lambert.evaluate(wi), vertex.lambert.pdf(wi))
-        } else {
-            let response = vertex.bsdf.respond(vertex.wo, wi);
-            (response.value, response.pdf)
-        };
-        if scattering == Vec3::ZERO {
-            return Vec3::ZERO;
-        }
-        let Some(origin) = vertex.origin_towards::<K>(wi, sample.wi) else {
-            return Vec3::ZERO;
-        };
-        let mut value = scattering * sample.value;
-        if K & (TEXTURED | PASSING) != 0 {
-            value *= self.tracer.glow_share::<K>(&sample, context);
-        }
-        *self.rays += 1;
-        value *= self.visibility(origin, sample.wi, sample.end);
-        if K & LAYERED != 0 && value != Vec3::ZERO {
-            let absorption = match vertex.beyond {
-                Some(absorption) if wi.z < 0.0 => absorption,
-                _ => self.absorption,
-            };
-            value *= dimming(absorption, sample.distance);
-        }
-        match (estimator, sample.pdf) {
-            (Estimator::Mis, Some(pdf)) => value * power_heuristic(pdf, scattering_pdf),
-            _ => value,
-        }
-    }
-
-    /// Share of the light that gets through on the way to a source.
-    #[inline]
-    fn visibility(&self, origin: Vec3, direction: Vec3, end: End) -> Vec3 {
-        let tracer = self.tracer;
-        let mut share = Vec3::ONE;
-        if K & PASSING == 0 {
-            let is_blocked = match end {
-                End::At(target) => tracer.accel.is_blocked(origin, target),
-                End::Here => false,
-                End::Infinity => tracer.accel.is_blocked_towards(origin, direction),
-            };
-            return if is_blocked { Vec3::ZERO } else { share };
-        }
-        let stops = |hit: Hit| {
-            let surface = tracer.surface(hit.triangle);
-            if !surface.passes {
-                return true;
-            }
-            // On the edge between two triangles a ray meets both; only one of them is to dim it.
-            if !tracer.triangles[hit.triangle as usize].owns(hit.barycentric) {
-                return false;
-            }
-            share *= tracer.passage::<K>(surface, hit.place(), direction).transmittance;
-            share == Vec3::ZERO
-        };
-        let is_blocked = match end {
-            End::At(target) => tracer.accel.meets(origin, target, stops),
-            End::Here => false,
-            End::Infinity => tracer.accel.meets_towards(origin, direction, stops),
-        };
-        if is_blocked { Vec3::ZERO } else { share }
-    }
-
     /// Adds the sources that block nothing and that a ray crosses before `end`.
     #[inline]
     fn meet_sources(&mut self, ray: &Ray, origin: Vec3, passed: f32, end: f32) {
@@ -351,6 +316,16 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         for met in self.tracer.lights.distant(&ray.context, ray.direction) {
             let weight = self.weight_of_met(ray, |_| met.pdf);
             self.radiance += self.throughput * met.radiance * weight;
+        }
+    }
+
+    /// A path that meets a body from behind before it has crossed any surface has been in it from its start.
+    fn learn_body(&mut self, hit: Hit, surface: &Surface, direction: Vec3) {
+        if let Some(absorption) = surface.body
+            && self.tracer.triangles[hit.triangle as usize].normal.dot(direction) > 0.0
+        {
+            self.absorption = absorption;
+            self.knows_body = true;
         }
     }
 
@@ -382,8 +357,11 @@ fn dimming(absorption: Vec3, distance: f32) -> Vec3 {
     Vec3::from_array(absorption.to_array().map(channel))
 }
 
-/// Chance that a path goes on that carries this much in its strongest channel, never above 1: above it the division
-/// by the chance would lose the light that the survivors should stand for.
+/// Chance that a path goes on that carries this much in its strongest channel, index squared aside, never above 1: above it the division
+/// by the chance would lose the light that the survivors should stand for. Nor is 1 lowered to make sure of an end: a
+/// path that is worth its while would be ended for nothing, and those that are left would weigh more at each vertex.
+/// With a best chance of 0.998 the efficiency was 0.66 of this one in furnaces of albedo 0.9, 0.20 in 0.99 and 0.018
+/// in 0.999 (5063 rays for each path); with one of 0.95, 0.23, 0.008 and none at all.
 pub(super) fn survival_probability(carried: f32) -> f32 {
-    (carried / ROULETTE_THROUGHPUT).min(MAX_SURVIVAL)
+    (carried / ROULETTE_THROUGHPUT).min(1.0)
 }

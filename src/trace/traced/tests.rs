@@ -5,6 +5,7 @@ use crate::artefact::StableId;
 use crate::math::square_to_uniform_sphere;
 use crate::math::testing::Random;
 use crate::scene::{Indices, Instance, Light, Material, Mesh, PointLight, RectLight, Scene, SpotLight};
+use crate::trace::Tally;
 use crate::trace::sampler::{Dimensions, Sampler, Sobol};
 use crate::trace::testing::{Shape, of_any_size};
 use crate::trace::{Tracer, Transport};
@@ -149,13 +150,13 @@ fn answers(tracer: &Tracer, [point, other]: [Vec3; 2], index: u64) -> Vec<u32> {
     let transport = Transport::default();
     let hit = tracer.closest_hit(point, direction).expect("the room is closed");
     let aim = tracer.aim(point, direction, w, Vec2::new(v, u));
-    let looked = tracer.camera_radiance(point, direction, &sampler, &transport, &mut 0);
+    let looked = tracer.camera_radiance(point, direction, &sampler, &transport, &mut Tally::default());
     // Off all surfaces by more than the rounding of a point far away, which start_at makes allowance for.
     let above = tracer.traced_from_world.point(point) + 0.02 * direction;
     let is_clear = tracer.accel.closest(above, -direction, 0.04).is_none();
     let start =
         if is_clear { tracer.start_at(point, direction) } else { tracer.start_on_triangle(3, [0.3, 0.3], Vec3::Y) };
-    let measured = tracer.diffuse_radiance(&start, &sampler, &transport, &mut 0);
+    let measured = tracer.diffuse_radiance(&start, &sampler, &transport, &mut Tally::default());
     let mut answers = vec![hit.distance, aim.map_or(0.0, |aim| aim.pdf.unwrap_or(1.0))];
     for vector in [hit.normal, aim.map_or(Vec3::ZERO, |aim| aim.direction), looked, measured] {
         answers.extend(vector.to_array());
@@ -205,7 +206,7 @@ fn light_does_not_ask_where_the_room_stands() {
     let light = |tracer: &Tracer, point: Vec3| {
         let path = |index| {
             let start = tracer.start_at(point, Vec3::Y);
-            tracer.diffuse_radiance(&start, &Sobol::new(9, index), &Transport::default(), &mut 0).y
+            tracer.diffuse_radiance(&start, &Sobol::new(9, index), &Transport::default(), &mut Tally::default()).y
         };
         f64::from((0..8192).map(path).sum::<f32>() / 8192.0)
     };

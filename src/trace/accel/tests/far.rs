@@ -2,6 +2,7 @@
 
 use crate::math::testing::Random;
 use crate::scene::Material;
+use crate::trace::Tally;
 use crate::trace::accel::Accel;
 use crate::trace::sampler::Sobol;
 use crate::trace::testing::{Shape, of_any_size};
@@ -123,11 +124,13 @@ fn a_pane_seen_from_afar() {
     for distance in DISTANCES.into_iter().skip(2) {
         let look = |x: f32| {
             let (eye, ahead) = (Vec3::new(x, 0.2, distance), Vec3::NEG_Z);
-            tracer.camera_radiance(eye, ahead, &Sobol::new(1, 0), &transport, &mut 0).y
+            tracer.camera_radiance(eye, ahead, &Sobol::new(1, 0), &transport, &mut Tally::default()).y
         };
         assert_eq!([look(0.0), look(0.499), look(0.501)], [1.0, 1.0, 0.0], "{distance}");
         let start = tracer.start_at(Vec3::new(0.1, 0.2, distance), Vec3::NEG_Z);
-        let path = |index| f64::from(tracer.diffuse_radiance(&start, &Sobol::new(2, index), &transport, &mut 0).y);
+        let path = |index| {
+            f64::from(tracer.diffuse_radiance(&start, &Sobol::new(2, index), &transport, &mut Tally::default()).y)
+        };
         let found = (0..64).map(path).sum::<f64>() / 64.0 * std::f64::consts::PI;
         let truth = f64::from(distance).powi(-2);
         let tolerance = truth * (1e-5 + truth);

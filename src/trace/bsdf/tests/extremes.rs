@@ -125,3 +125,16 @@ fn what_makes_no_sense_gives_nothing() {
         let _ = (bsdf.sample(Vec3::Z, [0.5; 3]), bsdf.evaluate(Vec3::Z, Vec3::Z));
     }
 }
+
+/// Out of what is 100 times as dense, within a part in a million of the critical angle: by the sine, f32 tells on
+/// which side a direction lies; by the cosine, 0.99995, it is off by a part in a thousand.
+#[test]
+fn the_critical_angle_of_a_dense_body() {
+    let at = |share: f64| {
+        let sin = 0.01 * share;
+        let wo = Vec3::new(sin as f32, 0.0, (1.0 - sin * sin).sqrt() as f32);
+        Refraction { eta: 0.01, tint: Vec3::ONE }.sample(wo, 0.999_999).map(|sample| sample.wi.z)
+    };
+    assert!(at(1.0 - 1e-6).is_some_and(|z| z < 0.0));
+    assert!(at(1.0 + 1e-6).is_some_and(|z| z > 0.0));
+}

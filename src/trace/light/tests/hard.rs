@@ -143,7 +143,7 @@ fn shadow_rays_end_before_a_far_source() {
                 let receiver = reach * random.direction();
                 let Some(sample) = emitter.sample(receiver, random.square()) else { continue };
                 let side = if normal.dot(receiver) > 0.0 { 1.0 } else { -1.0 };
-                let height = f64::from(side) * normal.as_dvec3().dot(target(sample.end).as_dvec3());
+                let height = side * normal.as_dvec3().dot(target(sample.end).as_dvec3());
                 let error = f64::from(emitter.error.dot(normal.abs()));
                 assert!(height > 0.5 * error && height < 1.5 * error, "{height} of {error} from {reach} m");
             }

@@ -1,0 +1,90 @@
+//! One point on a source, seen from where a path is: what it gives, and what of that gets through.
+
+use super::{Walk, dimming};
+use crate::trace::accel::Hit;
+use crate::trace::kernel::{LAYERED, PASSING, TEXTURED};
+use crate::trace::light::{End, LightContext};
+use crate::trace::mis::power_heuristic;
+use crate::trace::path::vertex::Vertex;
+use crate::trace::sampler::{Dimensions, Sampler};
+use crate::trace::transport::Estimator;
+use glam::{Vec2, Vec3};
+
+impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
+    /// Radiance that a vertex sends on from one point on a source.
+    #[inline]
+    pub(super) fn light_sample(&mut self, vertex: &Vertex<'t>, context: &LightContext) -> Vec3 {
+        let [u, v, u_choice, _] = self.sampler.draw(Dimensions::Light { vertex: self.number });
+        let lights = &self.tracer.lights;
+        let Some(sample) = lights.sample(context, Vec2::new(u, v), u_choice) else {
+            return Vec3::ZERO;
+        };
+        let estimator = self.transport.estimator;
+        if estimator == Estimator::Bsdf && sample.pdf.is_some() {
+            return Vec3::ZERO;
+        }
+        let wi = vertex.frame.local_from_world(sample.wi);
+        let (scattering, scattering_pdf) = if K & LAYERED == 0 {
+            (vertex.lambert.evaluate(wi), vertex.lambert.pdf(wi))
+        } else {
+            let response = vertex.bsdf.respond(vertex.wo, wi);
+            (response.value, response.pdf)
+        };
+        if scattering == Vec3::ZERO {
+            return Vec3::ZERO;
+        }
+        let Some(origin) = vertex.origin_towards::<K>(wi, sample.wi) else {
+            return Vec3::ZERO;
+        };
+        let mut value = scattering * sample.value;
+        if K & (TEXTURED | PASSING) != 0 {
+            value *= self.tracer.glow_share::<K>(&sample, context);
+        }
+        self.tally.rays += 1;
+        value *= self.visibility(origin, sample.wi, sample.end);
+        if K & LAYERED != 0 && value != Vec3::ZERO {
+            let absorption = match vertex.beyond {
+                Some(absorption) if wi.z < 0.0 => absorption,
+                _ => self.absorption,
+            };
+            value *= dimming(absorption, sample.distance);
+        }
+        match (estimator, sample.pdf) {
+            (Estimator::Mis, Some(pdf)) => value * power_heuristic(pdf, scattering_pdf),
+            _ => value,
+        }
+    }
+
+    /// Share of the light that gets through on the way to a source.
+    #[inline]
+    fn visibility(&self, origin: Vec3, direction: Vec3, end: End) -> Vec3 {
+        let tracer = self.tracer;
+        let mut share = Vec3::ONE;
+        if K & PASSING == 0 {
+            let is_blocked = match end {
+                End::At(target) => tracer.accel.is_blocked(origin, target),
+                End::Here => false,
+                End::Infinity => tracer.accel.is_blocked_towards(origin, direction),
+            };
+            return if is_blocked { Vec3::ZERO } else { share };
+        }
+        let stops = |hit: Hit| {
+            let surface = tracer.surface(hit.triangle);
+            if !surface.passes {
+                return true;
+            }
+            // On the edge between two triangles a ray meets both; only one of them is to dim it.
+            if !tracer.triangles[hit.triangle as usize].owns(hit.barycentric) {
+                return false;
+            }
+            share *= tracer.passage::<K>(surface, hit.place(), direction).transmittance;
+            share == Vec3::ZERO
+        };
+        let is_blocked = match end {
+            End::At(target) => tracer.accel.meets(origin, target, stops),
+            End::Here => false,
+            End::Infinity => tracer.accel.meets_towards(origin, direction, stops),
+        };
+        if is_blocked { Vec3::ZERO } else { share }
+    }
+}
