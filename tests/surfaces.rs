@@ -157,7 +157,7 @@ fn lossless_things_vanish_in_a_furnace() {
         }
         let scene = builder.build();
         let points = on_walls(Vec3::NEG_ONE, Vec3::ONE, 2);
-        let readings = read(&scene, &points, 1 << 10, Transport::default());
+        let readings = read(&scene, &points, 1 << 11, Transport::default());
         let (found, error) = mean(&readings, 1);
         mean_within(found, error, PI, tolerance * PI).unwrap_or_else(|reason| panic!("{name}: {reason}"));
     }
