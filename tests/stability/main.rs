@@ -13,10 +13,12 @@ mod cases;
 mod guard;
 mod guards;
 mod judge;
+mod look;
 mod page;
 mod removal;
 mod seen;
 mod things;
+mod truths;
 mod worlds;
 
 use libtest_mimic::{Arguments, Failed, Trial};

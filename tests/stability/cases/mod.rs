@@ -14,21 +14,22 @@ use std::collections::HashSet;
 
 /// Every case with its group.
 pub fn all() -> Vec<(Group, &'static Case)> {
-    Group::ALL.into_iter().flat_map(|group| of(group).iter().map(move |case| (group, case))).collect()
+    Group::ALL.into_iter().flat_map(|group| of(group).map(move |case| (group, case))).collect()
 }
 
-/// The cases of a group.
-pub fn of(group: Group) -> &'static [Case] {
-    match group {
-        Group::Rays => rays::CASES,
+/// The cases of a group, by theme.
+pub fn of(group: Group) -> impl Iterator<Item = &'static Case> {
+    let themes: &[&[Case]] = match group {
+        Group::Rays => &[rays::CASES],
         Group::Place => place::CASES,
         Group::Distance => distance::CASES,
         Group::Triangles => triangles::CASES,
         Group::Energy => energy::CASES,
         Group::Lobes => lobes::CASES,
         Group::Images => images::CASES,
-        Group::Samples => samples::CASES,
-    }
+        Group::Samples => &[samples::CASES],
+    };
+    themes.iter().copied().flatten()
 }
 
 /// Whether the catalogue is one: enough cases, each with a name of its own, and every text said.
