@@ -5,10 +5,10 @@
 use crate::case::Verdict;
 use crate::common::meter::on_walls;
 use crate::common::scenes::SceneBuilder;
-use crate::judge::{ensure, light_by, mean_reads, no_path_was_lost};
+use crate::judge::{ensure, light_at, light_by, mean_reads, no_path_was_lost};
 use crate::things::{level, with_box};
 use crate::worlds::room_of_radiance_one;
-use bevy_kiln::bake::{CancelToken, PictureSettings, render_picture};
+use bevy_kiln::bake::{CancelToken, MeterPoint, PictureSettings, render_picture};
 use bevy_kiln::scene::{Camera, Material, Scene};
 use bevy_kiln::trace::{Estimator, Transport};
 use glam::{DVec3, Vec3};
@@ -52,6 +52,14 @@ pub fn furnace_of_one(scene: &Scene, samples: u32, tolerance: f64) -> Verdict {
     let transport = Transport { estimator: Estimator::Bsdf, ..Transport::default() };
     let readings = light_by(scene, &on_walls(Vec3::NEG_ONE, Vec3::ONE, 2), samples, transport)?;
     mean_reads(&readings, PI, tolerance)
+}
+
+/// What [`furnace_of_0_8`] asks for.
+pub const FURNACE_HOLDS: &str = "E = π/(1 − ρ) within 0.3 %, ρ = 0.8";
+
+/// Whether E = π/(1 − ρ) at points on the walls of a furnace of albedo 0.8, wherever it is and whatever its shape.
+pub fn furnace_of_0_8(scene: &Scene, points: &[MeterPoint]) -> Verdict {
+    mean_reads(&light_at(scene, points, 1 << 11)?, PI / 0.2, 3e-3)
 }
 
 /// Whether a box of a material that loses no light cannot be seen in a furnace of radiance 1, half of which it fills.

@@ -5,7 +5,8 @@
 use crate::common::scenes::SceneBuilder;
 use bevy_kiln::artefact::StableId;
 use bevy_kiln::scene::{
-    DirectionalLight, Interior, Light, Material, PointLight, RectLight, Scattering, Scene, SpotLight, Standard,
+    DirectionalLight, Filter, Interior, Light, Material, PointLight, RectLight, Scattering, Scene, SpotLight, Standard,
+    Texels, Texture, Wrap,
 };
 use glam::{Affine3A, Quat, Vec2, Vec3};
 
@@ -77,6 +78,11 @@ pub fn sphere(centre: Vec3, radius: f32, levels: u32) -> (Vec<Vec3>, Vec<u32>) {
     let positions: Vec<Vec3> = triangles.concat().into_iter().map(|vertex| centre + radius * vertex).collect();
     let indices = (0..positions.len() as u32).collect();
     (positions, indices)
+}
+
+/// A picture of these texels, row by row.
+pub fn picture([width, height]: [u32; 2], texels: Vec<[f32; 4]>, wrap: Wrap, filter: Filter) -> Texture {
+    Texture { name: "picture".into(), width, height, texels: Texels::Float(texels.into()), wrap: [wrap; 2], filter }
 }
 
 /// A scene of lights alone.

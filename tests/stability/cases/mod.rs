@@ -12,6 +12,9 @@ mod triangles;
 use crate::case::{Case, Group, Verdict};
 use std::collections::HashSet;
 
+/// What happens in several groups without the bound on a ray's start.
+const SELF_SHADOW: &str = "walls meet the rays that leave them";
+
 /// Every case with its group.
 pub fn all() -> Vec<(Group, &'static Case)> {
     Group::ALL.into_iter().flat_map(|group| of(group).map(move |case| (group, case))).collect()

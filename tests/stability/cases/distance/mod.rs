@@ -20,8 +20,8 @@ pub const CASES: &[&[Case]] =
 
 const AREA_NEAR: &str = "area sampling: the variance grows as 1/d² (55.6 million samples for 2 %, 0.5 mm under Cornell's \
                          lamp)";
-const NEAR_2: &str = "E = π·F (Howell B-3) within 2 %, noise counted in: no sample counts for more than radiance times \
-                      solid angle, by light sampling alone";
+const NEAR_2: &str = "E = π·F (Howell B-3) within 2 %: no sample counts for more than radiance times solid angle, \
+                      by light sampling alone";
 const GRAZING: &str = "shadow terminators and acne at low suns; biases long enough to hide them detach shadows";
 
 /// The light at points by samples on lamps alone: surface rays would find a near lamp, and hide how it is sampled.

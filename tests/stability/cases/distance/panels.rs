@@ -54,10 +54,10 @@ pub const CASES: &[Case] = &[
     Case {
         name: "noise_half_a_millimetre_under_a_lamp",
         hard: "a path's worth by area is radiance · cos²/d² · area: 0.5 m² over 2.5e-7 m²",
-        elsewhere: "area sampling needs 55.6 million samples 0.5 mm under Cornell's lamp for 2 % (notes: bakers, C)",
-        holds: "the relative variance of a path there is within 10 times that at the floor's middle, of the full estimator in a white room",
+        elsewhere: "area sampling needs 55.6 million samples 0.5 mm under Cornell's lamp for 2 %",
+        holds: "the relative variance of a path there is at most 10 times that at the floor's middle, by light samples and surface samples together, ρ = 0.5",
         guard: &TWO_WAYS,
-        without: "relative variance grows by more than a thousand",
+        without: "the relative variance is more than a thousand times that",
         check: variance,
     },
 ];

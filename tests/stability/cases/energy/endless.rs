@@ -112,7 +112,7 @@ pub const CASES: &[Case] = &[
         name: "a_pocket_that_no_probe_meets",
         hard: "one of 200 points lies in a white box without light: its paths meet nothing that ends them",
         elsewhere: HANGS,
-        holds: "all others read π; there it is dark, and the 16 paths that were cut are reported",
+        holds: "all others read π to 1e-5, as f32 rounds; there it is dark, and the 16 paths that were cut are reported",
         guard: &LENGTH_BOUND,
         without: "the measurement never ends",
         check: pocket,
@@ -121,7 +121,7 @@ pub const CASES: &[Case] = &[
         name: "a_white_open_room",
         hard: "a white room without a ceiling: paths end by leaving alone",
         elsewhere: "a best chance of survival below 1 makes noise of what has none",
-        holds: "under a sky of radiance 1 every path brings 1: E = π within 1e-5",
+        holds: "under a sky of radiance 1 every path brings 1: E = π to 1e-5, as f32 rounds",
         guard: &NO_BEST_CHANCE,
         without: "paths that carry all they ever did are ended, the rest weigh more",
         check: || white_room_with_a_hole(2.0),
@@ -130,19 +130,21 @@ pub const CASES: &[Case] = &[
         name: "a_white_room_with_a_small_hole",
         hard: "all light comes through a hole of 10 cm in a white room of 24 m²: 2400 bounces on the way",
         elsewhere: CUT,
-        holds: "under a sky of radiance 1 every path brings 1: E = π within 1e-5",
+        holds: "under a sky of radiance 1 every path brings 1: E = π to 1e-5, as f32 rounds",
         guard: &NO_BEST_CHANCE,
         without: "next to no path gets out, with the light of all others",
         check: || white_room_with_a_hole(0.1),
     },
 ];
 
+/// What comes of a measurement.
 fn measured(scene: &Scene, point: MeterPoint) -> Verdict {
     let settings = MeterSettings { samples_per_point: 16, ..MeterSettings::default() };
     let measured = measure_irradiance(scene, &[point], &settings, &(), &CancelToken::default());
     measured.map(|_| ()).map_err(|error| error.to_string())
 }
 
+/// Whether a result is the refusal of light without end, which names a material.
 fn refused(result: Verdict) -> Verdict {
     match result {
         Err(error)

@@ -44,6 +44,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
+/// Glass over a floor, air above it, in a furnace whose walls glow by n² as much below the surface.
 fn pool() -> Verdict {
     let [air, water] = [1.0, 2.25].map(|radiance: f32| move || glowing(0.5, 0.5 * radiance));
     let mut builder = SceneBuilder::default();
@@ -76,6 +77,7 @@ enum StackOf {
     Slabs,
 }
 
+/// The ground under a stack under a white sky.
 fn stack(of_what: StackOf) -> Verdict {
     let pane = || standard(Standard { specular_transmission: 1.0, perceptual_roughness: 0.0, ..Standard::default() });
     let mut builder = level(SceneBuilder::default(), "ground", -0.1, [2000.0, 1.0], grey(0.0));

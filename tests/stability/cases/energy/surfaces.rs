@@ -51,7 +51,7 @@ pub const CASES: &[Case] = &[
         name: "rough_glass_in_a_furnace",
         hard: "facets of glass send light to other facets, from both sides",
         elsewhere: LOSES,
-        holds: "E = π within 0.5 % around glass of roughness 0.6: the tables' own last digit",
+        holds: "E = π within 0.5 % around glass of roughness 0.6: the last digit of the tables of its albedo",
         guard: &MORE_THAN_ONE_FACET,
         without: "what met two facets is lost",
         check: || vanishes(&glass(1.5, 0.6), 1 << 14, 5e-3),

@@ -8,9 +8,9 @@ use crate::guards::bake::SUM_IN_F64;
 use crate::guards::path::{CAP, NO_BEST_CHANCE, SURVIVAL_AT_MOST_ONE, SURVIVORS_STAND_IN, WEIGHTS};
 use crate::judge::{all_read, ensure, light_at, light_by, mean_reads};
 use crate::look::furnace_of_one;
-use crate::things::{level, of};
+use crate::things::{level, of, picture};
 use bevy_kiln::bake::{CancelToken, MeterSettings, measure_irradiance};
-use bevy_kiln::scene::{Filter, Material, Scattering, Texels, Texture, TextureRef, UvChannel, Wrap};
+use bevy_kiln::scene::{Filter, Material, Scattering, TextureRef, UvChannel, Wrap};
 use bevy_kiln::trace::{Estimator, Transport};
 use glam::Vec3;
 use std::f64::consts::PI;
@@ -104,7 +104,7 @@ pub const CASES: &[Case] = &[
         name: "two_million_samples_do_not_drift",
         hard: "adding 0.1 to a sum of 13 000 rounds by up to 0.5 % of what is added, the same way every time",
         elsewhere: "accumulators of f32, or of half floats (Godot)",
-        holds: "E = π·L within 1e-9, all that n · 2⁻⁵³ leaves",
+        holds: "E = π·L to 1e-9: n · 2⁻⁵³ is 2.3e-10",
         guard: &SUM_IN_F64,
         without: "the sum drifts",
         check: two_million_samples,
@@ -134,26 +134,15 @@ fn cap() -> Verdict {
     mean_reads(&readings, PI * (1.0 - albedo.powi(5)) / (1.0 - albedo), 3e-3)
 }
 
-/// A picture of 4 × 4 texels.
-fn picture(texels: Vec<[f32; 4]>) -> Texture {
-    Texture {
-        name: "picture".into(),
-        width: 4,
-        height: 4,
-        texels: Texels::Float(texels.into()),
-        wrap: [Wrap::Clamp; 2],
-        filter: Filter::Linear,
-    }
-}
-
 fn pictures_and_mirrors() -> Verdict {
     let colour = |i: usize| {
         let value = 0.05 + 0.9 * ((i * 7) % 16) as f32 / 15.0;
         [value, value * 0.5, 1.0 - value, 1.0]
     };
     let mut scene = furnace(1.0);
-    scene.textures =
-        vec![picture((0..16).map(colour).collect()), picture((0..16).map(|i| colour(i).map(|c| 1.0 - c)).collect())];
+    let of_16 = |colours: [[f32; 4]; 16]| picture([4, 4], colours.to_vec(), Wrap::Clamp, Filter::Linear);
+    let albedos = std::array::from_fn(colour);
+    scene.textures = vec![of_16(albedos), of_16(albedos.map(|colour| colour.map(|c| 1.0 - c)))];
     for material in &mut scene.materials {
         material.base_colour_texture = Some(TextureRef { texture: 0, uv: UvChannel::Uv1 });
         material.emission_texture = Some(TextureRef { texture: 1, uv: UvChannel::Uv1 });

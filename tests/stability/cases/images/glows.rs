@@ -7,10 +7,10 @@ use crate::common::scenes::{SceneBuilder, glowing, grey};
 use crate::guards::bake::LIGHT_ONLY;
 use crate::guards::texture::{EMISSION_IN_BOUNDS, PRESENCE, TEXTURED_GLOW};
 use crate::judge::{ensure, is_refused, light_at, reads, same_but_for_rounding};
-use crate::things::level;
+use crate::things::{level, picture};
 use bevy_kiln::bake::{BakeWarning, CancelToken, MeterReading, MeterSettings, measure_irradiance};
 use bevy_kiln::math::polygon_irradiance;
-use bevy_kiln::scene::{Alpha, Filter, Material, Scene, Texels, Texture, TextureRef, UvChannel, Wrap};
+use bevy_kiln::scene::{Alpha, Filter, Material, Scene, TextureRef, UvChannel, Wrap};
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 
@@ -41,7 +41,7 @@ pub const CASES: &[Case] = &[
         name: "an_emission_beyond_f32",
         hard: "a lamp of 1e18 times a texel of 1e38: no number holds the product",
         elsewhere: SPREADS,
-        holds: "paths that meet it are left out, counted and reported; the rest of the light is right within 1 %",
+        holds: "paths that meet it are left out, counted and reported; the rest of the light is π less the lamp's form factor to 1 % and the share left out",
         guard: &LIGHT_ONLY,
         without: "∞ in a mean",
         check: beyond_f32,
@@ -50,10 +50,10 @@ pub const CASES: &[Case] = &[
         name: "alpha_of_0_and_1e_40",
         hard: "a surface that is not there, and one that a denormal number says is there",
         elsewhere: "division by a chance of 0",
-        holds: "E is to 1e-6 what it is without the first, within 1 % without the second",
+        holds: "E is what it is without the first to 1e-6, as f32 rounds, and without the second within 1 %",
         guard: &PRESENCE,
         without: "a thousandth of all paths ends at nothing, the others weigh more",
-        check: || with_alpha(0.0, None).and_then(|()| nearly_without(1e-40)),
+        check: barely_there,
     },
 ];
 
@@ -66,15 +66,7 @@ fn spark(texel: f32, strength: f32) -> Scene {
         .build();
     let texels: Vec<[f32; 4]> =
         (0..1024).map(|index| if index == 32 * 12 + 20 { [texel, texel, texel, 1.0] } else { [0.0; 4] }).collect();
-    let (wrap, filter) = ([Wrap::Clamp; 2], Filter::Nearest);
-    scene.textures = vec![Texture {
-        name: "spark".into(),
-        width: 32,
-        height: 32,
-        texels: Texels::Float(texels.into()),
-        wrap,
-        filter,
-    }];
+    scene.textures = vec![picture([32, 32], texels, Wrap::Clamp, Filter::Nearest)];
     scene.materials[1].emission_texture = Some(TextureRef { texture: 0, uv: UvChannel::Uv1 });
     scene
 }
@@ -113,23 +105,19 @@ fn beyond_f32() -> Verdict {
     })
 }
 
-fn screened(alpha: Option<(f32, Alpha)>) -> Result<Vec<MeterReading>, String> {
+/// Light on the ground under a sky, below a screen of this opacity.
+fn screened(opacity: Option<f32>) -> Result<Vec<MeterReading>, String> {
     let mut builder = level(SceneBuilder::default(), "ground", 0.0, [1.0, 1.0], grey(0.5));
-    if let Some((opacity, alpha)) = alpha {
-        let mut material = Material { alpha, ..grey(0.5) };
+    if let Some(opacity) = opacity {
+        let mut material = Material { alpha: Alpha::Blend, ..grey(0.5) };
         material.base_colour.w = opacity;
         builder = level(builder, "screen", 0.5, [1000.0, 1.0], material);
     }
     light_at(&builder.sky(Vec3::ONE).build(), &[at(Vec3::ZERO, Vec3::Y), at(Vec3::X * 0.5, Vec3::Y)], 1 << 12)
 }
 
-/// As without it, or as an opaque one.
-fn with_alpha(opacity: f32, like: Option<Alpha>) -> Verdict {
-    let found = screened(Some((opacity, Alpha::Blend)))?;
-    same_but_for_rounding(&found, &screened(like.map(|alpha| (1.0, alpha)))?, 1e-6)
-}
-
-fn nearly_without(opacity: f32) -> Verdict {
-    let (found, without) = (screened(Some((opacity, Alpha::Blend)))?, screened(None)?);
-    reads(&found[0], without[0].irradiance.x, 1e-2)
+fn barely_there() -> Verdict {
+    let open = screened(None)?;
+    same_but_for_rounding(&screened(Some(0.0))?, &open, 1e-6)?;
+    reads(&screened(Some(1e-40))?[0], open[0].irradiance.x, 1e-2)
 }

@@ -122,6 +122,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
+/// Whether the ground under a sky reads `truth` [lx].
 fn horizontal(map: EnvironmentMap, truth: f64, tolerance: f64) -> Verdict {
     reads(&light_at(&under_map(map), &[at(Vec3::ZERO, Vec3::Y)], 1 << 16)?[0], truth, tolerance)
 }

@@ -1,25 +1,25 @@
 //! Edges that triangles share, or nearly share: no ray passes between, none starts behind.
 
-use super::SELF;
 use crate::case::{Case, Verdict};
+use crate::cases::SELF_SHADOW;
 use crate::common::meter::on_walls;
 use crate::common::scenes::furnace;
 use crate::guards::rays::{NO_CONSTANT, ORIGIN_MOVE, WATERTIGHT};
-use crate::judge::{all_dark, ensure, light_at, mean_reads};
+use crate::judge::{all_dark, ensure, light_at};
+use crate::look::{FURNACE_HOLDS, furnace_of_0_8};
 use crate::worlds::{askew_aside, dark_box, leaning, near_narrow_edges, points_under, under};
 use bevy_kiln::scene::{Indices, Scene};
 use bevy_kiln::trace::Tracer;
 use glam::Vec3;
-use std::f64::consts::PI;
 
 pub const CASES: &[Case] = &[
     Case {
         name: "a_wall_in_slivers",
         hard: "a wall of a closed room as a fan of 1000 triangles around a point on its rim, askew",
         elsewhere: "thin triangles are dropped or their normals are wrong: light leaks",
-        holds: "E = π/(1 − ρ) within 0.3 % (ρ = 0.8), noise counted in",
+        holds: FURNACE_HOLDS,
         guard: &ORIGIN_MOVE,
-        without: SELF,
+        without: SELF_SHADOW,
         check: wall_in_slivers,
     },
     Case {
@@ -73,7 +73,7 @@ fn fan() -> (Vec<Vec3>, Vec<u32>) {
 fn wall_in_slivers() -> Verdict {
     let scene = under(with_floor(furnace(0.8), fan()), askew_aside());
     let points = points_under(&on_walls(Vec3::NEG_ONE, Vec3::ONE, 2), askew_aside());
-    mean_reads(&light_at(&scene, &points, 1 << 11)?, PI / 0.2, 3e-3)
+    furnace_of_0_8(&scene, &points)
 }
 
 /// Irradiance that enters a black box, at its middle, through a band of ±`band` about edges from `a` to `b`, found by

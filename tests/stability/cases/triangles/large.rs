@@ -1,12 +1,14 @@
 //! Very many triangles, and triangles very far away.
 
-use super::{SELF, has_the_light_of_the_room};
+use super::has_the_light_of_the_room;
 use crate::case::{Case, Verdict};
+use crate::cases::SELF_SHADOW;
 use crate::common::meter::on_walls;
 use crate::common::scenes::{SceneBuilder, furnace, glowing, grey};
 use crate::guards::rays::ORIGIN_MOVE;
 use crate::guards::scene::VALIDATED;
 use crate::judge::{is_refused, light_at, mean_reads};
+use crate::look::{FURNACE_HOLDS, furnace_of_0_8};
 use crate::worlds::{askew, askew_aside, joined, points_under, room};
 use bevy_kiln::artefact::StableId;
 use bevy_kiln::bake::MeterPoint;
@@ -19,34 +21,34 @@ pub const CASES: &[Case] = &[
         name: "a_hundred_thousand_instances",
         hard: "98 304 glowing instances of one square are the walls of a furnace, each corner rounded four times",
         elsewhere: "a tree or a light list per instance; cracks between instances",
-        holds: "E = π/(1 − ρ) within 0.8 % (ρ = 0.5), noise counted in: gaps of a step (5e-7 m) around tiles of 16 mm lose 1e-4",
+        holds: "E = π/(1 − ρ) within 0.8 %, ρ = 0.5: gaps of a step (5e-7 m) around tiles of 16 mm lose 1e-4",
         guard: &ORIGIN_MOVE,
-        without: SELF,
+        without: SELF_SHADOW,
         check: hundred_thousand,
     },
     Case {
         name: "a_furnace_of_a_million_km",
         hard: "coordinates of 9e8 m, farther than the moon, with steps of 64 m",
         elsewhere: "edge functions or areas overflow: light leaks or is NaN",
-        holds: "E = π/(1 − ρ) within 0.3 % (ρ = 0.8), noise counted in",
+        holds: FURNACE_HOLDS,
         guard: &ORIGIN_MOVE,
-        without: "walls meet the rays that leave them",
+        without: SELF_SHADOW,
         check: || furnace_of(5e8),
     },
     Case {
         name: "a_room_beside_triangles_at_900_000_km",
         hard: "a scene 1e9 times as large as the room in it",
         elsewhere: "errors and boxes by the scene's size: walls are 100 m thick",
-        holds: "the mean texel is that of the room alone to 1e-3: errors are each triangle's own",
+        holds: "the mean texel is that of the room alone to 1e-3, by the same random numbers: errors are each triangle's own",
         guard: &ORIGIN_MOVE,
-        without: "walls meet the rays that leave them",
+        without: SELF_SHADOW,
         check: || beside(9e8),
     },
     Case {
         name: "vertices_at_1e15",
         hard: "a scene 1e15 times as large as the room in it: for the tree the room is one point",
         elsewhere: "a sky dome far out takes all precision, silently",
-        holds: "refused by name: a vertex beyond 1e9 m would take the order from what is within 1e-13 of that; the room beside it has its own light to 1e-3",
+        holds: "refused by name: a vertex beyond 1e9 m would take the order from what lies nearer to each other than 1e-13 of that; the mean texel of the room beside it is that of the room alone to 1e-3",
         guard: &VALIDATED,
         without: "nothing is said",
         check: || far_is_refused(1e15),
@@ -55,7 +57,7 @@ pub const CASES: &[Case] = &[
         name: "vertices_at_1e30",
         hard: "coordinates whose square no f32 holds",
         elsewhere: "areas of boxes overflow: a tree over NaN",
-        holds: "refused by name: a vertex beyond 1e9 m would take the order from what is within 1e-13 of that; the room beside it has its own light to 1e-3",
+        holds: "refused by name: a vertex beyond 1e9 m would take the order from what lies nearer to each other than 1e-13 of that; the mean texel of the room beside it is that of the room alone to 1e-3",
         guard: &VALIDATED,
         without: "nothing is said",
         check: || far_is_refused(1e30),
@@ -64,7 +66,7 @@ pub const CASES: &[Case] = &[
         name: "boxes_that_overflow",
         hard: "triangles at 3e38 m on either side: their distance is infinite in f32",
         elsewhere: "a tree over infinities",
-        holds: "refused by name: a vertex beyond 1e9 m would take the order from what is within 1e-13 of that; the room beside it has its own light to 1e-3",
+        holds: "refused by name: a vertex beyond 1e9 m would take the order from what lies nearer to each other than 1e-13 of that; the mean texel of the room beside it is that of the room alone to 1e-3",
         guard: &VALIDATED,
         without: "nothing is said",
         check: || far_is_refused(3e38),
@@ -119,7 +121,7 @@ fn furnace_of(scale: f32) -> Verdict {
     }
     let mut points = points_under(&on_walls(Vec3::NEG_ONE, Vec3::ONE, 2), turn);
     points.iter_mut().for_each(|point| point.position *= scale);
-    mean_reads(&light_at(&scene, &points, 1 << 11)?, PI / 0.2, 3e-3)
+    furnace_of_0_8(&scene, &points)
 }
 
 /// The room in a world with two triangles this far away on either side.

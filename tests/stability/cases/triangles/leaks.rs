@@ -18,7 +18,7 @@ pub const CASES: &[Case] = &[
         elsewhere: "leaks at edges and corners are the first of all complaints (Godot 51638 and others)",
         holds: "E = 0 exactly, which is below 1e-6 of outside",
         guard: &NO_CONSTANT,
-        without: "rays start outside: the box is bright",
+        without: "rays start outside of the box, which is bright",
         check: in_a_bright_sky,
     },
     Case {
@@ -27,7 +27,7 @@ pub const CASES: &[Case] = &[
         elsewhere: "a bias of 10 mm starts rays behind the next wall",
         holds: "E = 0 exactly at 10 points",
         guard: &NO_CONSTANT,
-        without: "rays start outside",
+        without: "rays start outside of the boxes",
         check: interpenetrating,
     },
     Case {

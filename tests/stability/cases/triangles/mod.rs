@@ -27,8 +27,6 @@ pub const CASES: &[&[Case]] = &[
     refused::CASES,
 ];
 
-const SELF: &str = "walls meet the rays that leave them";
-
 /// Every texel of a bake, covered or not.
 fn raw_texels(scene: &Scene) -> Result<Vec<Vec3>, String> {
     let settings = BakeSettings { samples_per_texel: 64, density: 3.3, ..BakeSettings::default() };
