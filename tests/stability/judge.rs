@@ -2,7 +2,7 @@
 
 use crate::case::Verdict;
 use crate::common::meter::mean;
-use crate::worlds::level_room;
+use crate::worlds::{level_room, room};
 use bevy_kiln::bake::{BakeReport, BakeSettings, BakeWarning, CancelToken, Lightmap};
 use bevy_kiln::bake::{MeterPoint, MeterReading, MeterSettings};
 use bevy_kiln::bake::{bake_lightmap, measure_irradiance};
@@ -204,7 +204,12 @@ pub fn rejects_what_is_wrong() -> Verdict {
         samples: 16,
     };
     let tinted = MeterReading { irradiance: Vec3::new(1.0, 1.0, 1.02).as_dvec3(), ..reading(1.0, 0.0) };
-    let sound = [reads(&reading(1.0, 1e-3), 1.0, 0.01), agree(&reading(1.0, 1e-3), &reading(1.001, 1e-3), 0.01)];
+    let room = room();
+    let mut brighter = room.clone();
+    brighter.materials.iter_mut().for_each(|material| material.emitted_radiance *= 1.01);
+    let same = |there: &Scene| SameRoom { here: &room, there, scale: 1.0, density: 3.3, tolerance: 5e-3 }.holds();
+    let sound =
+        [same(&room), reads(&reading(1.0, 1e-3), 1.0, 0.01), agree(&reading(1.0, 1e-3), &reading(1.001, 1e-3), 0.01)];
     let wrong = [
         reads(&reading(1.02, 1e-3), 1.0, 0.01),
         reads(&reading(1.0, 3e-3), 1.0, 0.01),
@@ -222,6 +227,7 @@ pub fn rejects_what_is_wrong() -> Verdict {
         same_but_for_rounding(&[reading(1.0, 0.1)], &[reading(1.00001, 0.1)], 1e-6),
         same_but_for_rounding(&[reading(f64::NAN, 0.1)], &[reading(1.0, 0.1)], 1e-6),
         same_but_for_rounding(&[], &[], 1e-6),
+        same(&brighter),
         is_refused(&Scene::default(), "mesh"),
         no_path_was_lost(&BakeReport { warnings: vec![BakeWarning::NotLight { paths: 1 }], ..BakeReport::default() }),
     ];

@@ -4,7 +4,7 @@
 
 use crate::case::Verdict;
 use crate::common::meter::on_walls;
-use crate::common::scenes::SceneBuilder;
+use crate::common::scenes::{SceneBuilder, furnace, grey};
 use crate::judge::{ensure, light_at, light_by, mean_reads, no_path_was_lost};
 use crate::things::{level, with_box};
 use crate::worlds::room_of_radiance_one;
@@ -66,4 +66,22 @@ pub fn furnace_of_0_8(scene: &Scene, points: &[MeterPoint]) -> Verdict {
 pub fn vanishes(material: &Material, samples: u32, tolerance: f64) -> Verdict {
     let corners = [Vec3::new(-0.8, -0.6, -0.7), Vec3::new(0.7, 0.8, 0.8)];
     furnace_of_one(&with_box(room_of_radiance_one(), "thing", corners, material).build(), samples, tolerance)
+}
+
+/// Looks reject what is wrong: another radiance, a body and walls that absorb.
+pub fn rejects_what_is_wrong() -> Verdict {
+    let (sky, up) = (SceneBuilder::default().sky(Vec3::ONE).build(), [Vec3::ZERO, Vec3::Y]);
+    let points = on_walls(Vec3::NEG_ONE, Vec3::ONE, 2);
+    sees(&sky, up, 16, 1.0, 1e-3)?;
+    let wrong = [
+        sees(&sky, up, 16, 1.01, 1e-3),
+        shows_albedos(grey(0.99), [1.0; 3], 2e-3),
+        vanishes(&grey(0.9), 1 << 10, 3e-3),
+        furnace_of_one(&furnace(0.5), 16, 3e-3),
+        furnace_of_0_8(&furnace(0.79), &points),
+    ];
+    match wrong.iter().position(Result::is_ok) {
+        Some(index) => Err(format!("wrong number {index} passed")),
+        None => Ok(()),
+    }
 }

@@ -14,16 +14,18 @@ use bevy_kiln::scene::Light;
 use glam::{Affine3A, DVec3, Vec3};
 use std::f64::consts::PI;
 
-const BULB_WITHOUT: &str = "the cone is wider than the sky, or narrower than the sphere: E is wrong";
+const TOO_NARROW: &str = "the cone is too narrow: less of it is below the horizon";
+const INVERSE_SQUARE: &str = "E = I/d² to 1e-6: f32 rounds place and intensity";
 
 pub const CASES: &[Case] = &[
     Case {
         name: "a_tenth_of_a_millimetre_from_a_bulb",
-        hard: "a sphere of 1 m fills all but 1.4 % of a hemisphere, a part of which is below the tilted receiver's horizon",
+        hard: "a sphere of 1 m fills all but 1.4 % of a hemisphere, a part of which is below the tilted receiver's \
+                horizon",
         elsewhere: "a sphere as a disc of πr²/d², or sampled by its area, of which most faces away",
         holds: "E is that of what is above the horizon (quadrature) within 2 %, by light sampling alone",
         guard: &SPHERE_CONE,
-        without: "the cone is too narrow: less of it is below the horizon",
+        without: TOO_NARROW,
         check: || tilted_beside_a_bulb(1.0001),
     },
     Case {
@@ -32,7 +34,7 @@ pub const CASES: &[Case] = &[
         elsewhere: "√ of a negative rounding error is NaN",
         holds: "E = I·(1 + cos 60°)/2/r² within 2 %, by light sampling alone",
         guard: &SPHERE_CONE,
-        without: "the cone is too narrow: less of it is below the horizon",
+        without: TOO_NARROW,
         check: || tilted_beside_a_bulb(1.0),
     },
     Case {
@@ -41,7 +43,7 @@ pub const CASES: &[Case] = &[
         elsewhere: "√(1 − 4) is NaN, or a lamp that hides in its own sphere is dark",
         holds: "a bulb shrinks until it touches the receiver, at the same intensity: E = I/d² within 2 %",
         guard: &BULBS,
-        without: BULB_WITHOUT,
+        without: "the cone is wider than the sky, or narrower than the sphere: E is wrong",
         check: || beside_a_bulb(1.0, 0.5, 0.02),
     },
     Case {
@@ -57,7 +59,7 @@ pub const CASES: &[Case] = &[
         name: "a_tenth_of_a_millimetre_from_a_point",
         hard: "E = 1e8 lx of 1 cd",
         elsewhere: "engines clamp the distance at 1 cm, which takes all but a ten-thousandth",
-        holds: "E = I/d² to 1e-6: f32 rounds place and intensity",
+        holds: INVERSE_SQUARE,
         guard: &BULBS,
         without: "E is 1e4 lx",
         check: || beside_a_bulb(0.0, 1e-4, 1e-6),
@@ -66,7 +68,7 @@ pub const CASES: &[Case] = &[
         name: "a_centimetre_less_than_the_usual_clamp",
         hard: "5 mm from a point: E = 40 000 lx of 1 cd",
         elsewhere: "engines clamp the distance at 1 cm",
-        holds: "E = I/d² to 1e-6: f32 rounds place and intensity",
+        holds: INVERSE_SQUARE,
         guard: &BULBS,
         without: "E is a quarter",
         check: || beside_a_bulb(0.0, 5e-3, 1e-6),
@@ -75,7 +77,8 @@ pub const CASES: &[Case] = &[
         name: "a_point_10_km_from_a_tilted_floor",
         hard: "shadow rays of 10 km at 10 mrad from points with an error off their floor",
         elsewhere: GRAZING,
-        holds: "E = I·cos/d² to 1e-4 at 64 points: f32 puts the lamp within 1 mm of its height of 100 m and the normal within 1e-5 of the elevation",
+        holds: "E = I·cos/d² to 1e-4 at 64 points: f32 puts the lamp within 1 mm of its height of 100 m and the normal \
+                within 1e-5 of the elevation",
         guard: &ORIGIN_MOVE,
         without: "the floor shadows itself",
         check: a_far_point_over_a_floor,

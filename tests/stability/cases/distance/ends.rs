@@ -10,11 +10,14 @@ use crate::worlds::askew;
 use bevy_kiln::scene::{Light, PointLight, RectLight};
 use glam::{Vec2, Vec3};
 
+const BOTH_WAYS: &str = "the cosine without its sign: a lamp that shines both ways";
+const RISES_AGAIN: &str = "the square of a negative number: light grows again with distance";
+
 pub const CASES: &[Case] = &[
     Case {
         name: "behind_a_rectangle",
         hard: "a metre behind, and a millimetre behind its plane and beside it",
-        elsewhere: "the cosine without its sign: a lamp that shines both ways",
+        elsewhere: BOTH_WAYS,
         holds: "E = 0 exactly",
         guard: &ONE_SIDED,
         without: "the back shines",
@@ -23,7 +26,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "behind_a_glowing_panel",
         hard: "a panel of one side, met by rays and by samples",
-        elsewhere: "the cosine without its sign: a lamp that shines both ways",
+        elsewhere: BOTH_WAYS,
         holds: "E = 0 exactly",
         guard: &ONE_SIDED,
         without: "the back shines",
@@ -51,7 +54,8 @@ pub const CASES: &[Case] = &[
         name: "a_spot_of_one_angle",
         hard: "inner = outer: the smooth step has no width",
         elsewhere: "a division by 0: NaN on the edge",
-        holds: "E = I/d² to 1e-5 at 1 mrad within it: f32 rounds the way and its cosine (Bevy's least width is 1e-4 in the cosine)",
+        holds: "E = I/d² to 1e-5 at 1 mrad within it: f32 rounds the way and its cosine (Bevy's least width is 1e-4 in \
+                the cosine)",
         guard: &DIMMING,
         without: "more light than the lamp has",
         check: || spot_reads(0.5, 0.5, 0.499, 1.0),
@@ -68,7 +72,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "past_a_bulbs_range",
         hard: "at the end of Bevy's window (1 − (d/range)⁴)², 0.01 % beyond it, at twice and at 10 000 times",
-        elsewhere: "the square of a negative number: light grows again with distance",
+        elsewhere: RISES_AGAIN,
         holds: "E = 0 exactly",
         guard: &DIMMING,
         without: "light beyond the range",
@@ -77,7 +81,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "past_a_rectangles_range",
         hard: "the same window for a lamp with an area",
-        elsewhere: "the square of a negative number: light grows again with distance",
+        elsewhere: RISES_AGAIN,
         holds: "E = 0 exactly",
         guard: &DIMMING,
         without: "light beyond the range",

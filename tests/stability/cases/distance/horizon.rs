@@ -12,12 +12,15 @@ use bevy_kiln::scene::{Light, PointLight};
 use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::PI;
 
+const CULLED: &str = "a light whose centre is below the horizon is culled";
+const ABOVE: &str = "E is that of what is above the horizon (quadrature) within 2 %, by light sampling alone";
+
 pub const CASES: &[Case] = &[
     Case {
         name: "a_sun_that_has_half_set",
         hard: "a disc of 0.0093 rad whose middle is 2 mrad below the horizon, beside another light",
-        elsewhere: "a light whose centre is below the horizon is culled",
-        holds: "E is that of what is above the horizon (quadrature) within 2 %, by light sampling alone",
+        elsewhere: CULLED,
+        holds: ABOVE,
         guard: &HORIZON,
         without: "the sun is never chosen: it is dark",
         check: || sun_at(0.0093, -0.002),
@@ -25,8 +28,9 @@ pub const CASES: &[Case] = &[
     Case {
         name: "a_sun_of_half_a_sphere",
         hard: "a disc of π rad whose middle is 40° below the horizon, beside another light",
-        elsewhere: "a light whose centre is below the horizon is culled; 1 − cos² of a right angle is negative by rounding",
-        holds: "E is that of what is above the horizon (quadrature) within 2 %, by light sampling alone",
+        elsewhere: "a light whose centre is below the horizon is culled; 1 − cos² of a right angle is negative by \
+                rounding",
+        holds: ABOVE,
         guard: &HORIZON,
         without: "the sun is never chosen: it is dark",
         check: || sun_at(std::f32::consts::PI, -0.7),
@@ -34,8 +38,8 @@ pub const CASES: &[Case] = &[
     Case {
         name: "a_bulb_that_has_half_set",
         hard: "a sphere whose centre is 0.05 rad below the horizon and its rim 0.1 rad above, beside another light",
-        elsewhere: "a light whose centre is below the horizon is culled",
-        holds: "E is that of what is above the horizon (quadrature) within 2 %, by light sampling alone",
+        elsewhere: CULLED,
+        holds: ABOVE,
         guard: &HORIZON,
         without: "the bulb is never chosen: it is dark",
         check: bulb_at_the_horizon,
@@ -43,7 +47,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "a_rectangle_half_below_the_horizon",
         hard: "the receiver's plane cuts the lamp, whose centre is below it, beside another light",
-        elsewhere: "a light whose centre is below the horizon is culled",
+        elsewhere: CULLED,
         holds: "E is that of the clipped polygon (Lambert) within 2 %, by light sampling alone",
         guard: &HORIZON,
         without: "the lamp is never chosen: it is dark",

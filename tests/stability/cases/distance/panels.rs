@@ -14,6 +14,9 @@ use bevy_kiln::scene::Light;
 use bevy_kiln::trace::Transport;
 use glam::{Affine3A, Vec2, Vec3};
 
+const ENDS_BEHIND: &str = "an end that lies behind its lamp is blocked by it; a bias that is long enough passes what \
+                           hangs before the lamp";
+
 pub const CASES: &[Case] = &[
     Case {
         name: "a_tenth_of_a_millimetre_under_a_glowing_panel",
@@ -27,7 +30,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "100_m_from_a_glowing_panel",
         hard: "a shadow ray of 100 m ends within 6 µm of its target, on a panel whose own error is 2 µm",
-        elsewhere: "an end that lies behind its lamp is blocked by it; a bias that is long enough passes what hangs before the lamp",
+        elsewhere: ENDS_BEHIND,
         holds: "E = π·F (Howell B-3) within 1 %",
         guard: &LAMP_END,
         without: "a fifth of the light is lost",
@@ -36,7 +39,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "10_km_from_a_glowing_panel",
         hard: "a shadow ray of 10 km ends within 0.6 mm of its target, on a panel whose own error is 2 µm",
-        elsewhere: "an end that lies behind its lamp is blocked by it; a bias that is long enough passes what hangs before the lamp",
+        elsewhere: ENDS_BEHIND,
         holds: "E = π·F (Howell B-3) within 1e-3",
         guard: &LAMP_END,
         without: "half of the shadow rays end behind the panel, which blocks its own light: E is halved",
@@ -55,7 +58,8 @@ pub const CASES: &[Case] = &[
         name: "noise_half_a_millimetre_under_a_lamp",
         hard: "a path's worth by area is radiance · cos²/d² · area: 0.5 m² over 2.5e-7 m²",
         elsewhere: "area sampling needs 55.6 million samples 0.5 mm under Cornell's lamp for 2 %",
-        holds: "the relative variance of a path there is at most 10 times that at the floor's middle, by light samples and surface samples together, ρ = 0.5",
+        holds: "the relative variance of a path there is at most 10 times that at the floor's middle, by light samples \
+                and surface samples together, ρ = 0.5",
         guard: &TWO_WAYS,
         without: "the relative variance is more than a thousand times that",
         check: variance,

@@ -51,7 +51,8 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "edge_on_beside_a_rectangle",
-        hard: "1 mm off its edge and 1 mm below its plane, facing it: the receiver's normal is perpendicular to the lamp's",
+        hard: "1 mm off its edge and 1 mm below its plane, facing it: the receiver's normal is perpendicular to the \
+                lamp's",
         elsewhere: "Cornell's lamp needs 9.84 million samples by area 1 unit off its edge for 2 %",
         holds: "E is that of the polygon (Lambert) within 3 %",
         guard: &SOLID_ANGLE,

@@ -13,30 +13,34 @@ use bevy_kiln::scene::Light;
 use bevy_kiln::trace::{Estimator, Transport};
 use glam::{Affine3A, Vec3};
 
+const BY_ALL_THREE: &str = "E = E⊥·cos to 1e-6 by each of the three estimators: f32 rounds the direction";
+const NEVER_MET: &str = "the estimator of surface rays believes that its rays will meet the sun: it is dark";
+
 pub const CASES: &[Case] = &[
     Case {
         name: "a_sun_without_width",
         hard: "a disc of no solid angle: radiance is E/0",
         elsewhere: "0/0 where the disc is looked up; a surface's rays never meet it",
-        holds: "E = E⊥·cos to 1e-6 by each of the three estimators: f32 rounds the direction",
+        holds: BY_ALL_THREE,
         guard: &DELTA,
-        without: "the estimator of surface rays believes that its rays will meet the sun: it is dark",
+        without: NEVER_MET,
         check: || small_sun(0.0),
     },
     Case {
         name: "a_sun_of_a_ten_millionth",
         hard: "a disc less wide than a step between f32 directions",
         elsewhere: "rays meet it by the luck of rounding, with a radiance of 1e14",
-        holds: "E = E⊥·cos to 1e-6 by each of the three estimators: f32 rounds the direction",
+        holds: BY_ALL_THREE,
         guard: &DELTA,
-        without: "the estimator of surface rays believes that its rays will meet the sun: it is dark",
+        without: NEVER_MET,
         check: || small_sun(1e-7),
     },
     Case {
         name: "a_sun_at_10_mrad",
         hard: "shadow rays leave a floor of 200 m, which lies askew, nearly along it",
         elsewhere: GRAZING,
-        holds: "E = E⊥·sin of the elevation to 2⁻²²/elevation (2.4e-5) at 64 points: f32 normals and directions are off by as much",
+        holds: "E = E⊥·sin of the elevation to 2⁻²²/elevation (2.4e-5) at 64 points: f32 normals and directions are \
+                off by as much",
         guard: &ORIGIN_MOVE,
         without: "the floor shadows itself",
         check: || grazing(1e-2),
@@ -45,7 +49,8 @@ pub const CASES: &[Case] = &[
         name: "a_sun_at_100_urad",
         hard: "shadow rays leave a floor of 200 m, which lies askew, all but along it",
         elsewhere: GRAZING,
-        holds: "E = E⊥·sin of the elevation to 2⁻²²/elevation (0.24 %) at 64 points: f32 normals and directions are off by as much",
+        holds: "E = E⊥·sin of the elevation to 2⁻²²/elevation (0.24 %) at 64 points: f32 normals and directions are \
+                off by as much",
         guard: &ORIGIN_MOVE,
         without: "the floor shadows itself",
         check: || grazing(1e-4),
@@ -54,7 +59,8 @@ pub const CASES: &[Case] = &[
         name: "a_sun_at_1_urad",
         hard: "a shadow ray rises by 0.2 mm over 200 m; f32 normals are off by a tenth of the elevation",
         elsewhere: GRAZING,
-        holds: "E = E⊥·sin of the elevation to 2⁻²²/elevation (24 %) at 64 points, as f32 normals and directions are off: none is in shadow",
+        holds: "E = E⊥·sin of the elevation to 2⁻²²/elevation (24 %) at 64 points, as f32 normals and directions are \
+                off: none is in shadow",
         guard: &ORIGIN_MOVE,
         without: "the floor shadows itself",
         check: || grazing(1e-6),

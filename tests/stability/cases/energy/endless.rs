@@ -21,6 +21,7 @@ const FOR_EVER: &str = "nothing absorbs and nothing leaves: light has no steady 
 const HANGS: &str = "paths that never end, or a number that only the cap on bounces decided";
 const REFUSED: &str = "refused, with the material's name and what to do";
 const NOT_REFUSED: &str = "paths go on to the bound and the bake ends with a number that means nothing";
+const BRINGS_1: &str = "under a sky of radiance 1 every path brings 1: E = π to 1e-5, as f32 rounds";
 
 pub const CASES: &[Case] = &[
     Case {
@@ -112,7 +113,8 @@ pub const CASES: &[Case] = &[
         name: "a_pocket_that_no_probe_meets",
         hard: "one of 200 points lies in a white box without light: its paths meet nothing that ends them",
         elsewhere: HANGS,
-        holds: "all others read π to 1e-5, as f32 rounds; there it is dark, and the 16 paths that were cut are reported",
+        holds: "all others read π to 1e-5, as f32 rounds; there it is dark, and the 16 paths that were cut are \
+                reported",
         guard: &LENGTH_BOUND,
         without: "the measurement never ends",
         check: pocket,
@@ -121,7 +123,7 @@ pub const CASES: &[Case] = &[
         name: "a_white_open_room",
         hard: "a white room without a ceiling: paths end by leaving alone",
         elsewhere: "a best chance of survival below 1 makes noise of what has none",
-        holds: "under a sky of radiance 1 every path brings 1: E = π to 1e-5, as f32 rounds",
+        holds: BRINGS_1,
         guard: &NO_BEST_CHANCE,
         without: "paths that carry all they ever did are ended, the rest weigh more",
         check: || white_room_with_a_hole(2.0),
@@ -130,7 +132,7 @@ pub const CASES: &[Case] = &[
         name: "a_white_room_with_a_small_hole",
         hard: "all light comes through a hole of 10 cm in a white room of 24 m²: 2400 bounces on the way",
         elsewhere: CUT,
-        holds: "under a sky of radiance 1 every path brings 1: E = π to 1e-5, as f32 rounds",
+        holds: BRINGS_1,
         guard: &NO_BEST_CHANCE,
         without: "next to no path gets out, with the light of all others",
         check: || white_room_with_a_hole(0.1),

@@ -26,7 +26,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "twenty_panes",
-        hard: "light between 20 panes goes up and down some thirty times",
+        hard: "light between 20 panes goes up and down about thirty times",
         elsewhere: "a product of transmittances, which forgets what is reflected back down: half of the light",
         holds: "Stokes' stack (1862): T = (1 − r)/(1 + 19 r) at each angle, over a white sky within 2 %",
         guard: &NUMBER_DEALT_ANEW,

@@ -9,13 +9,14 @@ use bevy_kiln::scene::Standard;
 use glam::Vec3;
 
 const LOSES: &str = "a lobe that loses a few per cent at each bounce darkens a room by a multiple of that";
+const THREE_WALLS: &str = "three walls of it, three that glow: E = π within 0.3 %";
 
 pub const CASES: &[Case] = &[
     Case {
         name: "white_metal_of_roughness_0_3",
         hard: "a facet's light meets another facet: 0.7 % of it along the normal, 8 % at 80°",
         elsewhere: LOSES,
-        holds: "three walls of it, three that glow: E = π within 0.3 %",
+        holds: THREE_WALLS,
         guard: &MORE_THAN_ONE_FACET,
         without: "what met two facets is lost",
         check: || metal_walls(0.3, 1 << 12),
@@ -24,7 +25,7 @@ pub const CASES: &[Case] = &[
         name: "white_metal_of_roughness_0_6",
         hard: "a facet's light meets another facet: 18 % of it along the normal",
         elsewhere: LOSES,
-        holds: "three walls of it, three that glow: E = π within 0.3 %",
+        holds: THREE_WALLS,
         guard: &MORE_THAN_ONE_FACET,
         without: "what met two facets is lost",
         check: || metal_walls(0.6, 1 << 14),
@@ -33,7 +34,7 @@ pub const CASES: &[Case] = &[
         name: "white_metal_of_roughness_1",
         hard: "a facet's light meets another facet: 69 % of it along the normal",
         elsewhere: LOSES,
-        holds: "three walls of it, three that glow: E = π within 0.3 %",
+        holds: THREE_WALLS,
         guard: &MORE_THAN_ONE_FACET,
         without: "what met two facets is lost",
         check: || metal_walls(1.0, 1 << 15),
@@ -60,7 +61,8 @@ pub const CASES: &[Case] = &[
         name: "white_plastic",
         hard: "a coat and a base that share what arrives: more than all, if the base does not know of the coat",
         elsewhere: "coat plus base: an albedo up to 1.04, and light that grows from bounce to bounce",
-        holds: "under a white sky it shows its albedo in the table (docs/albedo.md), 1 within 0.2 %, at 0°, 60° and 80°",
+        holds: "under a white sky it shows its albedo in the table (docs/albedo.md), 1 within 0.2 %, at 0°, 60° and \
+                80°",
         guard: &WHAT_THE_COAT_LEAVES,
         without: "it shows more than the sky",
         check: || shows_albedos(standard(Standard::default()), [1.0, 1.0, 1.0], 2e-3),

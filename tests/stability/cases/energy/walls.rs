@@ -16,6 +16,8 @@ use glam::Vec3;
 use std::f64::consts::PI;
 
 const SERIES: &str = "the light is a series Σ ρⁿ, whose tail is the longer the whiter the walls";
+const TOO_LOW: &str = "a path is divided by a chance above 1, E is too low";
+const WEIGHTS_GROW: &str = "weights grow as (1/q)ⁿ: the variance has no end";
 
 pub const CASES: &[Case] = &[
     Case {
@@ -33,7 +35,7 @@ pub const CASES: &[Case] = &[
         elsewhere: CUT,
         holds: "E = π/(1 − ρ) within 0.3 %",
         guard: &SURVIVAL_AT_MOST_ONE,
-        without: "a path is divided by a chance above 1, E is too low",
+        without: TOO_LOW,
         check: || furnace_reads(0.5, 1 << 12, 3e-3),
     },
     Case {
@@ -51,7 +53,7 @@ pub const CASES: &[Case] = &[
         elsewhere: CUT,
         holds: "E = π/(1 − ρ) within 1 %, in 504 rays a path",
         guard: &NO_BEST_CHANCE,
-        without: "weights grow as (1/q)ⁿ: the variance has no end",
+        without: WEIGHTS_GROW,
         check: || furnace_reads(0.99, 1 << 8, 1e-2),
     },
     Case {
@@ -61,7 +63,7 @@ pub const CASES: &[Case] = &[
         holds: "E = π/(1 − ρ) within 1 %; the cost, seen by surface samples, is ln(0.15)/ln ρ + 1/(1 − ρ) = 2896 rays a \
                 path, of which the first 1896 live on for sure",
         guard: &NO_BEST_CHANCE,
-        without: "weights grow as (1/q)ⁿ: the variance has no end",
+        without: WEIGHTS_GROW,
         check: albedo_0_999,
     },
     Case {
@@ -79,7 +81,7 @@ pub const CASES: &[Case] = &[
         elsewhere: "an average albedo for a wall, or mirrors that bounces do not see",
         holds: "Le(x) = 1 − ρ(x) gives radiance 1 everywhere (Szirmay-Kalos 2001): E = π within 0.5 %",
         guard: &SURVIVAL_AT_MOST_ONE,
-        without: "a path is divided by a chance above 1, E is too low",
+        without: TOO_LOW,
         check: pictures_and_mirrors,
     },
     Case {

@@ -120,7 +120,8 @@ pub const CASES: &[Case] = &[
         name: "denormals_of_rgb9e5",
         hard: "2⁻¹⁶ needs an exponent of 0, below which mantissas run out",
         elsewhere: "a negative exponent, which is read as a large one",
-        holds: "2⁻²⁴ is 1 unit, half of that rounds up to 1, a quarter and f32's own denormals to 0; all within half a unit",
+        holds: "2⁻²⁴ is 1 unit, half of that rounds up to 1, a quarter and f32's own denormals to 0; all within half a \
+                unit",
         guard: &ROUNDED_AS_SPECIFIED,
         without: "truncated",
         check: || {

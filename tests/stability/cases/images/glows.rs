@@ -41,7 +41,8 @@ pub const CASES: &[Case] = &[
         name: "an_emission_beyond_f32",
         hard: "a lamp of 1e18 times a texel of 1e38: no number holds the product",
         elsewhere: SPREADS,
-        holds: "paths that meet it are left out, counted and reported; the rest of the light is π less the lamp's form factor to 1 % and the share left out",
+        holds: "paths that meet it are left out, counted and reported; the rest of the light is π less the lamp's form \
+                factor to 1 % and the share left out",
         guard: &LIGHT_ONLY,
         without: "∞ in a mean",
         check: beyond_f32,

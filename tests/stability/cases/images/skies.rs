@@ -12,6 +12,7 @@ use glam::{Vec2, Vec3};
 use std::f64::consts::{PI, TAU};
 
 const NO_LIGHT: &str = "that is negative or not a finite number";
+const NAMED: &str = "refused by name, with the pixel's column and row";
 
 pub const CASES: &[Case] = &[
     Case {
@@ -88,7 +89,7 @@ pub const CASES: &[Case] = &[
         name: "a_sky_with_nan",
         hard: "one pixel is no number",
         elsewhere: SPREADS,
-        holds: "refused by name, with the pixel's column and row",
+        holds: NAMED,
         guard: &EMISSION_IN_BOUNDS,
         without: "nothing is said",
         check: || bad_pixel(f32::NAN, NO_LIGHT),
@@ -97,7 +98,7 @@ pub const CASES: &[Case] = &[
         name: "a_sky_with_infinity",
         hard: "a saturated pixel of a photograph, stored as ∞",
         elsewhere: SPREADS,
-        holds: "refused by name, with the pixel's column and row",
+        holds: NAMED,
         guard: &EMISSION_IN_BOUNDS,
         without: "nothing is said",
         check: || bad_pixel(f32::INFINITY, NO_LIGHT),
@@ -106,7 +107,7 @@ pub const CASES: &[Case] = &[
         name: "a_sky_with_a_negative_pixel",
         hard: "what sharpening leaves beside a bright edge",
         elsewhere: "a negative density, and light that is taken away",
-        holds: "refused by name, with the pixel's column and row",
+        holds: NAMED,
         guard: &EMISSION_IN_BOUNDS,
         without: "nothing is said",
         check: || bad_pixel(-1e-6, NO_LIGHT),

@@ -105,8 +105,8 @@ fn numbered([width, height]: [u32; 2], wrap: Wrap, filter: Filter) -> Texture {
     picture([width, height], texels, wrap, filter)
 }
 
-/// Whether a picture shows these values at these places, to the bit. A square that glows by the picture, all of whose corners have
-/// the same texture coordinates, shows one place of it.
+/// Whether a picture shows these values at these places, to the bit. A square that glows by the picture, all of whose
+/// corners have the same texture coordinates, shows one place of it.
 fn shows(texture: &Texture, places: &[([f32; 2], f32)]) -> Verdict {
     for &(place, expected) in places {
         let mut scene = level(SceneBuilder::default(), "screen", 0.0, [1.0, 1.0], glowing(0.0, 1.0)).build();

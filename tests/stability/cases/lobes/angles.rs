@@ -10,6 +10,7 @@ use glam::Vec3;
 
 const OF_EXPORTERS: &str = "meshes and maps come so from exporters";
 const NO_FRAME: &str = "light leaves on the wrong side, or the frame is no number";
+const FLAT: &str = "the flat normal takes over: E = π within 0.3 % by a wall of perfect metal";
 
 pub const CASES: &[Case] = &[
     Case {
@@ -46,7 +47,7 @@ pub const CASES: &[Case] = &[
         name: "a_shading_normal_at_the_horizon",
         hard: "normals that lie in the surface: half of the directions are behind it",
         elsewhere: "black spots, or NaN that spreads",
-        holds: "the flat normal takes over: E = π within 0.3 % by a wall of perfect metal",
+        holds: FLAT,
         guard: &FLAT_WHERE_UNSEEN,
         without: NO_FRAME,
         check: || shaded(Vec3::Y, None),
@@ -64,7 +65,7 @@ pub const CASES: &[Case] = &[
         name: "a_normal_map_that_points_backwards",
         hard: "texels of (½, ½, 0) point into the surface",
         elsewhere: OF_EXPORTERS,
-        holds: "the flat normal takes over: E = π within 0.3 % by a wall of perfect metal",
+        holds: FLAT,
         guard: &FLAT_WHERE_UNSEEN,
         without: NO_FRAME,
         check: || shaded(Vec3::X, Some([0.5, 0.5, 0.0, 1.0])),

@@ -13,6 +13,8 @@ use bevy_kiln::scene::{Interior, Standard};
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 
+const NOT_CONCENTRATED: &str = "the light that the surface concentrates is missing";
+
 pub const CASES: &[Case] = &[
     Case {
         name: "a_receiver_inside_glass",
@@ -20,7 +22,7 @@ pub const CASES: &[Case] = &[
         elsewhere: "glass as a grey filter",
         holds: "under glass under a white sky E = π(1 − F̄), the mean F̄ by Fresnel's law, within 1 %",
         guard: &RADIANCE_BY_INDEX,
-        without: "the light that the surface concentrates is missing",
+        without: NOT_CONCENTRATED,
         check: || under_water(CLEAR),
     },
     Case {
@@ -36,7 +38,8 @@ pub const CASES: &[Case] = &[
         name: "attenuation_over_1e_6_m_into_the_open",
         hard: "a body without a back: its light travels for ever, in a channel that nothing absorbs",
         elsewhere: "0 · ∞",
-        holds: "over a single sheet red reads π(F̄ + (1 − F̄)/n²), as without absorption, within 1 %, green and blue π·F̄, what is reflected, within 5 %",
+        holds: "over a single sheet red reads π(F̄ + (1 − F̄)/n²), as without absorption, within 1 %, green and blue \
+                π·F̄, what is reflected, within 5 %",
         guard: &NO_ZERO_TIMES_INFINITY,
         without: "0 · ∞",
         check: open_body,
@@ -56,7 +59,7 @@ pub const CASES: &[Case] = &[
         elsewhere: "lengths in another unit: glass that is black, or a mist",
         holds: "E = π(1 − F̄) as in clear glass, within 1 %",
         guard: &RADIANCE_BY_INDEX,
-        without: "the light that the surface concentrates is missing",
+        without: NOT_CONCENTRATED,
         check: || under_water(Interior::Volume { attenuation_colour: Vec3::splat(0.5), attenuation_distance: 1e6 }),
     },
 ];

@@ -15,6 +15,8 @@ use glam::Vec3;
 use std::f64::consts::PI;
 
 const SQUEEZED: &str = "light is squeezed twice by n² and not let go";
+const LOST: &str = "a root of a negative number: paths are lost, and said to be";
+const NEGATIVE_ROOT: &str = "a root of a negative number";
 
 pub const CASES: &[Case] = &[
     Case {
@@ -65,8 +67,9 @@ pub const CASES: &[Case] = &[
     Case {
         name: "below_the_critical_angle",
         hard: "1e-4 rad from where the root of Snell's law vanishes",
-        elsewhere: "a root of a negative number",
-        holds: "seen from below: n²(1 − F) of the sky and F of a floor of radiance 3, by Fresnel's law, within 0.03 cd/m² (1 %)",
+        elsewhere: NEGATIVE_ROOT,
+        holds: "seen from below: n²(1 − F) of the sky and F of a floor of radiance 3, by Fresnel's law, within 0.03 \
+                cd/m² (1 %)",
         guard: &RADIANCE_BY_INDEX,
         without: "the sky is not concentrated by n²",
         check: || critical(-1e-4, 3e-2),
@@ -74,19 +77,19 @@ pub const CASES: &[Case] = &[
     Case {
         name: "at_the_critical_angle",
         hard: "the cosine behind the surface is 0, or the root of what rounding left",
-        elsewhere: "a root of a negative number",
+        elsewhere: NEGATIVE_ROOT,
         holds: "all is reflected: a floor of radiance 3 is seen within 2 %, which 1e-7 of angle changes",
         guard: &TOTAL_REFLECTION,
-        without: "a root of a negative number: paths are lost, and said to be",
+        without: LOST,
         check: || critical(1e-7, 6e-2),
     },
     Case {
         name: "beyond_the_critical_angle",
         hard: "Snell's law has no solution",
-        elsewhere: "a root of a negative number",
+        elsewhere: NEGATIVE_ROOT,
         holds: "all is reflected: a floor of radiance 3 is seen within 1e-4, as f32 rounds",
         guard: &TOTAL_REFLECTION,
-        without: "a root of a negative number: paths are lost, and said to be",
+        without: LOST,
         check: || critical(1e-4, 3e-4),
     },
     Case {

@@ -15,6 +15,9 @@ const SPIKE: &str = "the lobe is a spike of density 1/(π α²)";
 const FIREFLIES: &str = "0/0, or a least roughness (0.045 in games) that blurs every mirror";
 const AS_SMOOTH: &str = "a room with a small lamp reads, to the bit, what it does at roughness 0";
 const NO_SPIKE: &str = "0/0, or other light than that of a mirror";
+const SPIKE_OVER_DIFFUSE: &str = "a spike over a diffuse base: light samples find one of the two";
+const TWO_SPIKES: &str = "two spikes, and total reflection between them";
+const SPIKE_OVER_SPIKE: &str = "a spike over a spike: a clear coat over a perfect metal";
 
 pub const CASES: &[Case] = &[
     Case {
@@ -37,7 +40,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "plastic_of_roughness_0",
-        hard: "a spike over a diffuse base: light samples find one of the two",
+        hard: SPIKE_OVER_DIFFUSE,
         elsewhere: FIREFLIES,
         holds: UNSEEN,
         guard: &SMOOTH_LIMIT,
@@ -46,7 +49,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "plastic_of_roughness_1e_4",
-        hard: "a spike over a diffuse base: light samples find one of the two",
+        hard: SPIKE_OVER_DIFFUSE,
         elsewhere: FIREFLIES,
         holds: AS_SMOOTH,
         guard: &SMOOTH_LIMIT,
@@ -55,7 +58,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "glass_of_roughness_0",
-        hard: "two spikes, and total reflection between them",
+        hard: TWO_SPIKES,
         elsewhere: FIREFLIES,
         holds: UNSEEN,
         guard: &SMOOTH_LIMIT,
@@ -64,7 +67,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "glass_of_roughness_1e_4",
-        hard: "two spikes, and total reflection between them",
+        hard: TWO_SPIKES,
         elsewhere: FIREFLIES,
         holds: AS_SMOOTH,
         guard: &SMOOTH_LIMIT,
@@ -73,7 +76,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "coat_of_roughness_0",
-        hard: "a spike over a spike: a clear coat over a perfect metal",
+        hard: SPIKE_OVER_SPIKE,
         elsewhere: FIREFLIES,
         holds: UNSEEN,
         guard: &SMOOTH_LIMIT,
@@ -82,7 +85,7 @@ pub const CASES: &[Case] = &[
     },
     Case {
         name: "coat_of_roughness_1e_4",
-        hard: "a spike over a spike: a clear coat over a perfect metal",
+        hard: SPIKE_OVER_SPIKE,
         elsewhere: FIREFLIES,
         holds: AS_SMOOTH,
         guard: &SMOOTH_LIMIT,

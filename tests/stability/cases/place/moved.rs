@@ -15,6 +15,8 @@ const TURNED_HOLDS: &str = "the mean light at four points is that of the room al
 const MOVED_HOLDS: &str = "the mean texel is that of the room whose vertices are rounded so, at home, to 0.5 %: the \
                            step moves vertices, and nothing else; and that of a room along the axes to 3 %: \
                            other random numbers";
+const REPORTED: &str = "reported for the usual offset: shadow acne at a translation of 10 000";
+const FLOATING_ORIGIN: &str = "games move the world instead (floating origin); bakers do not";
 
 pub const CASES: &[Case] = &[
     Case {
@@ -29,7 +31,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "a_room_10_km_away",
         hard: "f32 has steps of 1 mm there, along one axis",
-        elsewhere: "reported for the usual offset: shadow acne at a translation of 10 000",
+        elsewhere: REPORTED,
         holds: MOVED_HOLDS,
         guard: &ORIGIN_MOVE,
         without: SELF_SHADOW,
@@ -38,7 +40,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "a_room_10_km_away_on_all_axes",
         hard: "f32 has steps of 1 mm there, along every axis",
-        elsewhere: "reported for the usual offset: shadow acne at a translation of 10 000",
+        elsewhere: REPORTED,
         holds: MOVED_HOLDS,
         guard: &ORIGIN_MOVE,
         without: SELF_SHADOW,
@@ -47,7 +49,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "a_room_100_km_away",
         hard: "f32 has steps of 7.8 mm there: points on a wall are off by several times that along its normal",
-        elsewhere: "games move the world instead (floating origin); bakers do not",
+        elsewhere: FLOATING_ORIGIN,
         holds: MOVED_HOLDS,
         guard: &ORIGIN_MOVE,
         without: SELF_SHADOW,
@@ -56,7 +58,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "a_room_100_km_away_on_all_axes",
         hard: "f32 has steps of 7.8 mm there, along every axis",
-        elsewhere: "games move the world instead (floating origin); bakers do not",
+        elsewhere: FLOATING_ORIGIN,
         holds: MOVED_HOLDS,
         guard: &ORIGIN_MOVE,
         without: SELF_SHADOW,

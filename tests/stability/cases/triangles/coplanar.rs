@@ -14,6 +14,9 @@ use bevy_kiln::scene::{Instance, Light, Material, PointLight, Scene};
 use glam::{Vec2, Vec3};
 use std::f64::consts::PI;
 
+const UPPER_LIT: &str = "each texel of the upper has E/π = E⊥·cos/π, each of the lower 0, to 1e-5: f32 rounds the \
+                         normal and the sun";
+
 pub const CASES: &[Case] = &[
     Case {
         name: "walls_twice",
@@ -46,7 +49,7 @@ pub const CASES: &[Case] = &[
         name: "sheets_back_to_back",
         hard: "two sheets in the same plane, askew, with their fronts outwards, one white and one black, under a sun",
         elsewhere: "each hides the other by rounding, and light comes through to the lower",
-        holds: "each texel of the upper has E/π = E⊥·cos/π, each of the lower 0, to 1e-5: f32 rounds the normal and the sun",
+        holds: UPPER_LIT,
         guard: &ORIGIN_MOVE,
         without: "the sheets shadow themselves and each other",
         check: || back_to_back(0.0),
@@ -55,7 +58,7 @@ pub const CASES: &[Case] = &[
         name: "a_wall_of_a_tenth_of_a_millimetre",
         hard: "two sheets 0.1 mm apart, askew, under a sun",
         elsewhere: "a bias longer than the wall (Godot: 0.5 mm) puts ray starts on its other side",
-        holds: "each texel of the upper has E/π = E⊥·cos/π, each of the lower 0, to 1e-5: f32 rounds the normal and the sun",
+        holds: UPPER_LIT,
         guard: &ORIGIN_MOVE,
         without: "the upper sheet shadows itself",
         check: || back_to_back(1e-4),

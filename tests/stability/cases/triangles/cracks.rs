@@ -35,14 +35,16 @@ pub const CASES: &[Case] = &[
         name: "rays_at_a_t_junction",
         hard: "a vertex on the middle of an edge, where f32 moves it: a real gap",
         elsewhere: "cracks at T-junctions as wide as the test's tolerance",
-        holds: "what enters a black box is at most the gap that f32 allows: 2·√3·2⁻²² m wide (coordinates of 8 m), 2 m long, seen from 1 m: 1.7e-6 lx under a sky of 1 cd/m²",
+        holds: "what enters a black box is at most the gap that f32 allows: 2·√3·2⁻²² m wide (coordinates of 8 m), 2 m \
+                long, seen from 1 m: 1.7e-6 lx under a sky of 1 cd/m²",
         guard: &WATERTIGHT,
         without: "the gap is as wide as the tolerance",
         check: aimed_at_a_t_junction,
     },
     Case {
         name: "dark_behind_a_t_junction",
-        hard: "a black box that leans (its walls meet the floor at 40°), with points 1 mm from that edge and from where a cut of the floor ends in it, under a sky",
+        hard: "a black box that leans (its walls meet the floor at 40°), with points 1 mm from that edge and from \
+                where a cut of the floor ends in it, under a sky",
         elsewhere: "a bias of 10 mm starts rays behind the next wall",
         holds: "E = 0 exactly: none of 10 points × 1024 paths sees the sky",
         guard: &NO_CONSTANT,

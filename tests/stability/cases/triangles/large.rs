@@ -16,6 +16,10 @@ use bevy_kiln::scene::{Instance, Scene};
 use glam::{Affine3A, Mat3, Vec3};
 use std::f64::consts::PI;
 
+const FAR_REFUSED: &str = "refused by name: a vertex beyond 1e9 m would take the order from what lies nearer to each \
+                           other than 1e-13 of that; the mean texel of the room beside it is that of the room alone to \
+                           1e-3";
+
 pub const CASES: &[Case] = &[
     Case {
         name: "a_hundred_thousand_instances",
@@ -39,7 +43,8 @@ pub const CASES: &[Case] = &[
         name: "a_room_beside_triangles_at_900_000_km",
         hard: "a scene 1e9 times as large as the room in it",
         elsewhere: "errors and boxes by the scene's size: walls are 100 m thick",
-        holds: "the mean texel is that of the room alone to 1e-3, by the same random numbers: errors are each triangle's own",
+        holds: "the mean texel is that of the room alone to 1e-3, by the same random numbers: errors are each \
+                triangle's own",
         guard: &ORIGIN_MOVE,
         without: SELF_SHADOW,
         check: || beside(9e8),
@@ -48,7 +53,7 @@ pub const CASES: &[Case] = &[
         name: "vertices_at_1e15",
         hard: "a scene 1e15 times as large as the room in it: for the tree the room is one point",
         elsewhere: "a sky dome far out takes all precision, silently",
-        holds: "refused by name: a vertex beyond 1e9 m would take the order from what lies nearer to each other than 1e-13 of that; the mean texel of the room beside it is that of the room alone to 1e-3",
+        holds: FAR_REFUSED,
         guard: &VALIDATED,
         without: "nothing is said",
         check: || far_is_refused(1e15),
@@ -57,7 +62,7 @@ pub const CASES: &[Case] = &[
         name: "vertices_at_1e30",
         hard: "coordinates whose square no f32 holds",
         elsewhere: "areas of boxes overflow: a tree over NaN",
-        holds: "refused by name: a vertex beyond 1e9 m would take the order from what lies nearer to each other than 1e-13 of that; the mean texel of the room beside it is that of the room alone to 1e-3",
+        holds: FAR_REFUSED,
         guard: &VALIDATED,
         without: "nothing is said",
         check: || far_is_refused(1e30),
@@ -66,7 +71,7 @@ pub const CASES: &[Case] = &[
         name: "boxes_that_overflow",
         hard: "triangles at 3e38 m on either side: their distance is infinite in f32",
         elsewhere: "a tree over infinities",
-        holds: "refused by name: a vertex beyond 1e9 m would take the order from what lies nearer to each other than 1e-13 of that; the mean texel of the room beside it is that of the room alone to 1e-3",
+        holds: FAR_REFUSED,
         guard: &VALIDATED,
         without: "nothing is said",
         check: || far_is_refused(3e38),

@@ -11,6 +11,8 @@ use bevy_kiln::bake::MeterPoint;
 use bevy_kiln::scene::Light;
 use glam::{Affine3A, Vec3};
 
+const TEN_MILLIMETRES: &str = "a bias of 10 mm starts rays behind the next wall";
+
 pub const CASES: &[Case] = &[
     Case {
         name: "a_closed_box_in_a_bright_sky",
@@ -24,7 +26,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "interpenetrating_boxes",
         hard: "two black boxes that lean, through each other, under a sky, with points 1 mm from edges of 40°",
-        elsewhere: "a bias of 10 mm starts rays behind the next wall",
+        elsewhere: TEN_MILLIMETRES,
         holds: "E = 0 exactly at 10 points",
         guard: &NO_CONSTANT,
         without: "rays start outside of the boxes",

@@ -12,6 +12,7 @@ use glam::{Affine3A, Mat3, Vec2, Vec3};
 const BLACK: &str =
     "black or NaN meshes (ericw-tools: entire lightmap turning black; glTF exporters write such normals)";
 const FLAT: &str = "every texel is that of the mesh without normals to 1e-4: the same paths, rounded";
+const BY_THE_MATRIX: &str = "normals by the matrix itself, or by an inverse that overflows";
 
 pub const CASES: &[Case] = &[
     Case {
@@ -62,8 +63,8 @@ pub const CASES: &[Case] = &[
     Case {
         name: "normals_of_a_sheared_mesh",
         hard: "normals do not transform as positions do",
-        elsewhere: "normals by the matrix itself, or by an inverse that overflows",
-        holds: "every texel is that of the mesh without normals to 1e-4: the same paths, rounded",
+        elsewhere: BY_THE_MATRIX,
+        holds: FLAT,
         guard: &FRAMES,
         without: "texels have the light of another direction",
         check: || normals_under(Mat3::from_cols(Vec3::X, Vec3::new(1.5, 1.0, 0.5), Vec3::new(-0.5, 0.0, 1.0))),
@@ -71,8 +72,8 @@ pub const CASES: &[Case] = &[
     Case {
         name: "normals_of_a_mesh_flattened_to_a_millionth",
         hard: "the inverse transpose has entries of 1e6",
-        elsewhere: "normals by the matrix itself, or by an inverse that overflows",
-        holds: "every texel is that of the mesh without normals to 1e-4: the same paths, rounded",
+        elsewhere: BY_THE_MATRIX,
+        holds: FLAT,
         guard: &FRAMES,
         without: "texels have the light of another direction",
         check: || normals_under(Mat3::from_diagonal(Vec3::new(1.0, 1e-6, 1.0)) * Mat3::from_rotation_z(0.3)),

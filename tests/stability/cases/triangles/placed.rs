@@ -9,6 +9,9 @@ use crate::truths::under_square;
 use crate::worlds::askew;
 use glam::{Affine3A, Vec3};
 
+const SINGULAR: &str = "a determinant below an ε counts as singular: the mesh is gone";
+const FACTOR: &str = "E = π·F (Howell B-3) of a lamp of 1 m within 1 %";
+
 pub const CASES: &[Case] = &[
     Case {
         name: "a_mirrored_lamp",
@@ -31,8 +34,8 @@ pub const CASES: &[Case] = &[
     Case {
         name: "a_mesh_scaled_by_a_millionth",
         hard: "its determinant is 1e-18",
-        elsewhere: "a determinant below an ε counts as singular: the mesh is gone",
-        holds: "E = π·F (Howell B-3) of a lamp of 1 m within 1 %",
+        elsewhere: SINGULAR,
+        holds: FACTOR,
         guard: &RELATIVE_DETERMINANT,
         without: "it is refused",
         check: || squeezed(Vec3::splat(1e-6)),
@@ -40,8 +43,8 @@ pub const CASES: &[Case] = &[
     Case {
         name: "a_mesh_squeezed_by_a_millionth_on_one_axis",
         hard: "its determinant is 1e-10, its axes differ by 1e8",
-        elsewhere: "a determinant below an ε counts as singular: the mesh is gone",
-        holds: "E = π·F (Howell B-3) of a lamp of 1 m within 1 %",
+        elsewhere: SINGULAR,
+        holds: FACTOR,
         guard: &RELATIVE_DETERMINANT,
         without: "it is refused",
         check: || squeezed(Vec3::new(1e-2, 1.0, 1e-8)),

@@ -11,6 +11,7 @@ use std::f64::consts::PI;
 
 const NAMELESS: &str = "NaN spreads through boxes and tree to all that the ray meets (Godot 95875, MoonRay 251)";
 const NAMED: &str = "refused by name, with what to do; the rest of the scene is baked";
+const STILL_THERE: &str = "refused by name; the mesh still blocks and reflects";
 
 pub const CASES: &[Case] = &[
     Case {
@@ -118,7 +119,7 @@ pub const CASES: &[Case] = &[
         name: "a_uv1_without_area",
         hard: "all of UV1 in one point: no texel lies on the mesh",
         elsewhere: "texels per metre of 1/0",
-        holds: "refused by name; the mesh still blocks and reflects",
+        holds: STILL_THERE,
         guard: &VALIDATED,
         without: "nothing is said",
         check: || {
@@ -131,7 +132,7 @@ pub const CASES: &[Case] = &[
         name: "a_uv1_of_nan",
         hard: "NaN as a place on the map",
         elsewhere: "a texel's number out of NaN: memory beyond the map",
-        holds: "refused by name; the mesh still blocks and reflects",
+        holds: STILL_THERE,
         guard: &VALIDATED,
         without: "nothing is said",
         check: || {

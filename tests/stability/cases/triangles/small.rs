@@ -10,12 +10,16 @@ use bevy_kiln::artefact::StableId;
 use bevy_kiln::scene::{Light, PointLight};
 use glam::{DVec3, Vec3};
 
+const INVISIBLE: &str = "Godot's lightmapper rejects det below 1e-5: such a triangle is invisible to every ray";
+const SHADOW: &str = "it casts its shadow (E = 0); beside it E = I·cos/d² to 1e-5, as f32 rounds, and a lamp under the \
+                      floor is not seen";
+
 pub const CASES: &[Case] = &[
     Case {
         name: "a_triangle_of_3_mm_over_a_floor_of_250_m",
         hard: "twice its area is 9e-6 m², five decades and more below the floor's",
-        elsewhere: "Godot's lightmapper rejects det below 1e-5: such a triangle is invisible to every ray",
-        holds: "it casts its shadow (E = 0); beside it E = I·cos/d² to 1e-5, as f32 rounds, and a lamp under the floor is not seen",
+        elsewhere: INVISIBLE,
+        holds: SHADOW,
         guard: &NO_LEAST_AREA,
         without: "there is no shadow",
         check: || shadow_of(&[Vec3::new(-1e-3, 1.0, -1e-3), Vec3::new(2e-3, 1.0, -1e-3), Vec3::new(-1e-3, 1.0, 2e-3)]),
@@ -23,8 +27,8 @@ pub const CASES: &[Case] = &[
     Case {
         name: "a_triangle_of_3_um_over_a_floor_of_250_m",
         hard: "sizes over eight decades in one tree",
-        elsewhere: "Godot's lightmapper rejects det below 1e-5: such a triangle is invisible to every ray",
-        holds: "it casts its shadow (E = 0); beside it E = I·cos/d² to 1e-5, as f32 rounds, and a lamp under the floor is not seen",
+        elsewhere: INVISIBLE,
+        holds: SHADOW,
         guard: &NO_LEAST_AREA,
         without: "there is no shadow",
         check: || shadow_of(&[Vec3::new(-1e-6, 1.0, -1e-6), Vec3::new(2e-6, 1.0, -1e-6), Vec3::new(-1e-6, 1.0, 2e-6)]),
@@ -32,7 +36,7 @@ pub const CASES: &[Case] = &[
     Case {
         name: "a_needle_of_a_million_to_one",
         hard: "1 m long and 1 µm wide",
-        elsewhere: "Godot's lightmapper rejects det below 1e-5: such a triangle is invisible to every ray",
+        elsewhere: INVISIBLE,
         holds: "it casts its shadow on its axis (E = 0); 10 cm beside it E = I·cos/d² to 1e-5, as f32 rounds",
         guard: &NO_LEAST_AREA,
         without: "there is no shadow",
