@@ -75,7 +75,8 @@ pub struct Case {
     pub hard: &'static str,
     /// What goes wrong in other bakers, or in the textbook's way.
     pub elsewhere: &'static str,
-    /// What must hold here, with its tolerance and where that comes from.
+    /// What must hold here, with its tolerance and where that comes from: "within" counts four standard errors of what
+    /// is measured in, "to" is of the number as it is.
     pub holds: &'static str,
     /// What in our code makes it hold.
     pub guard: &'static Guard,

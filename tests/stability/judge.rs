@@ -2,6 +2,7 @@
 
 use crate::case::Verdict;
 use crate::common::meter::mean;
+use crate::worlds::{level_room, room};
 use bevy_kiln::bake::{BakeReport, BakeSettings, BakeWarning, CancelToken, Lightmap};
 use bevy_kiln::bake::{MeterPoint, MeterReading, MeterSettings};
 use bevy_kiln::bake::{bake_lightmap, measure_irradiance};
@@ -87,13 +88,25 @@ pub fn all_read(readings: &[MeterReading], truth: f64, tolerance: f64) -> Verdic
 
 /// Whether the mean over readings is `truth`, as [`reads`].
 pub fn mean_reads(readings: &[MeterReading], truth: f64, tolerance: f64) -> Verdict {
+    reads(&mean_of(readings), truth, tolerance)
+}
+
+/// The mean over readings, and its noise.
+pub fn mean_of(readings: &[MeterReading]) -> MeterReading {
     let [red, green, blue] = [0, 1, 2].map(|channel| mean(readings, channel));
-    let mean = MeterReading {
+    MeterReading {
         irradiance: DVec3::new(red.0, green.0, blue.0),
         stderr: DVec3::new(red.1, green.1, blue.1),
         samples: readings.iter().map(|reading| reading.samples).sum(),
-    };
-    reads(&mean, truth, tolerance)
+    }
+}
+
+/// Whether nothing at all is read, anywhere.
+pub fn all_dark(readings: &[MeterReading]) -> Verdict {
+    ensure(!readings.is_empty(), || "nothing was read".into())?;
+    readings.iter().try_for_each(|reading| {
+        ensure(reading.irradiance == DVec3::ZERO, || format!("E is {}, not 0", reading.irradiance))
+    })
 }
 
 /// Whether two readings of the same light agree to the relative `tolerance`, the noise of both counted in.
@@ -118,6 +131,46 @@ pub fn same_but_for_rounding(a: &[MeterReading], b: &[MeterReading], tolerance: 
         }
     }
     Ok(())
+}
+
+/// A room, and what should have its light.
+pub struct SameRoom<'a> {
+    pub here: &'a Scene,
+    pub there: &'a Scene,
+    /// How much larger all lengths are there.
+    pub scale: f32,
+    /// Texels per metre here.
+    pub density: f32,
+    /// Of the mean texel, relative: random numbers are the same.
+    pub tolerance: f64,
+}
+
+impl SameRoom<'_> {
+    /// Whether both have as many texels and these the same mean; and to 3 % that of the level room, which has other
+    /// random numbers but where points have no error off their walls.
+    pub fn holds(&self) -> Verdict {
+        let bake = |scene: &Scene, density: f32| {
+            baked(scene, &BakeSettings { samples_per_texel: 64, density, ..BakeSettings::default() })
+                .map(|lightmap| texels(&lightmap))
+        };
+        let (_, level) = bake(&level_room(), self.density)?;
+        let (count, mean) = bake(self.here, self.density)?;
+        let (other_count, other_mean) = bake(self.there, self.density / self.scale)?;
+        ensure((mean / level - 1.0).abs() <= 0.03, || {
+            format!("the mean texel is {mean:.5}, and {level:.5} of a level room")
+        })?;
+        ensure(count == other_count, || format!("{other_count} texels, not {count}"))?;
+        ensure((other_mean / mean - 1.0).abs() <= self.tolerance, || {
+            format!("the mean texel is {other_mean:.5}, not {mean:.5}")
+        })
+    }
+}
+
+/// How many texels there are, and the mean of red over them [cd/m²].
+pub fn texels(lightmap: &Lightmap) -> (usize, f64) {
+    let texels = lightmap.pages.iter().flat_map(|page| page.raw.iter().zip(&page.coverage));
+    let texels: Vec<f64> = texels.filter(|(_, coverage)| **coverage > 0.0).map(|(raw, _)| f64::from(raw.x)).collect();
+    (texels.len(), texels.iter().sum::<f64>() / texels.len() as f64)
 }
 
 /// Whether the scene has a fault whose sentence begins so.
@@ -151,7 +204,12 @@ pub fn rejects_what_is_wrong() -> Verdict {
         samples: 16,
     };
     let tinted = MeterReading { irradiance: Vec3::new(1.0, 1.0, 1.02).as_dvec3(), ..reading(1.0, 0.0) };
-    let sound = [reads(&reading(1.0, 1e-3), 1.0, 0.01), agree(&reading(1.0, 1e-3), &reading(1.001, 1e-3), 0.01)];
+    let room = room();
+    let mut brighter = room.clone();
+    brighter.materials.iter_mut().for_each(|material| material.emitted_radiance *= 1.01);
+    let same = |there: &Scene| SameRoom { here: &room, there, scale: 1.0, density: 3.3, tolerance: 5e-3 }.holds();
+    let sound =
+        [same(&room), reads(&reading(1.0, 1e-3), 1.0, 0.01), agree(&reading(1.0, 1e-3), &reading(1.001, 1e-3), 0.01)];
     let wrong = [
         reads(&reading(1.02, 1e-3), 1.0, 0.01),
         reads(&reading(1.0, 3e-3), 1.0, 0.01),
@@ -159,6 +217,9 @@ pub fn rejects_what_is_wrong() -> Verdict {
         reads(&tinted, 1.0, 0.01),
         all_read(&[], 1.0, 0.01),
         mean_reads(&[], 1.0, 0.01),
+        all_dark(&[]),
+        all_dark(&[reading(0.0, 0.0), reading(1e-12, 0.0)]),
+        all_dark(&[reading(f64::NAN, 0.0)]),
         mean_reads(&[reading(1.0, 1e-3), reading(1.04, 1e-3)], 1.0, 0.01),
         agree(&reading(1.02, 1e-3), &reading(1.0, 1e-3), 0.01),
         agree(&reading(1.0, 3e-3), &reading(1.0, 3e-3), 0.01),
@@ -166,6 +227,7 @@ pub fn rejects_what_is_wrong() -> Verdict {
         same_but_for_rounding(&[reading(1.0, 0.1)], &[reading(1.00001, 0.1)], 1e-6),
         same_but_for_rounding(&[reading(f64::NAN, 0.1)], &[reading(1.0, 0.1)], 1e-6),
         same_but_for_rounding(&[], &[], 1e-6),
+        same(&brighter),
         is_refused(&Scene::default(), "mesh"),
         no_path_was_lost(&BakeReport { warnings: vec![BakeWarning::NotLight { paths: 1 }], ..BakeReport::default() }),
     ];

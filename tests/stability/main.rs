@@ -13,10 +13,12 @@ mod cases;
 mod guard;
 mod guards;
 mod judge;
+mod look;
 mod page;
 mod removal;
 mod seen;
 mod things;
+mod truths;
 mod worlds;
 
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -33,6 +35,7 @@ fn main() -> ExitCode {
         Trial::test("catalogue::guards_stand_in_the_source", || guard::all_stand().map_err(Failed::from)),
         Trial::test("catalogue::each_case_was_seen_failing", || seen::is_complete().map_err(Failed::from)),
         Trial::test("catalogue::page_is_up_to_date", || page::is_up_to_date().map_err(Failed::from)),
+        Trial::test("look::rejects_what_is_wrong", || look::rejects_what_is_wrong().map_err(Failed::from)),
         Trial::test("judge::rejects_what_is_wrong", || judge::rejects_what_is_wrong().map_err(Failed::from)),
     ]);
     // One after the other in one copy of the tree: they share its build.

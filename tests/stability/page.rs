@@ -33,6 +33,8 @@ fn page() -> PathBuf {
 fn catalogue() -> Result<String, String> {
     let seen = seen::load()?;
     let mut text = format!("\n{} cases, {} guards.\n", cases::all().len(), guard::all().len());
+    text +=
+        "\n\"Within 1 %\" counts four standard errors of what is measured in; \"to 1 %\" is of the number as it is.\n";
     for group in Group::ALL {
         text += &format!("\n### {}\n\n", group.title());
         text += "| case | what is hard | elsewhere | must hold here | guard | without it | seen then |\n";

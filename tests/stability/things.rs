@@ -1,13 +1,17 @@
-//! Materials and bodies that several groups of cases use, and a look through a camera.
+//! What scenes are made of: materials, bodies and lamps that several groups of cases use.
+//!
+//! Whole scenes are in [`crate::worlds`]; what is asked of them in [`crate::judge`].
 
-use crate::common::meter::on_walls;
-use crate::common::scenes::{SceneBuilder, glowing};
-use crate::judge::{light_by, mean_reads, no_path_was_lost};
-use bevy_kiln::bake::{CancelToken, PictureSettings, render_picture};
-use bevy_kiln::scene::{Camera, Interior, Material, Scattering, Scene, Standard};
-use bevy_kiln::trace::{Estimator, Transport};
-use glam::{DVec3, Vec3};
-use std::f64::consts::PI;
+use crate::common::scenes::SceneBuilder;
+use bevy_kiln::artefact::StableId;
+use bevy_kiln::scene::{
+    DirectionalLight, Filter, Interior, Light, Material, PointLight, RectLight, Scattering, Scene, SpotLight, Standard,
+    Texels, Texture, Wrap,
+};
+use glam::{Affine3A, Quat, Vec2, Vec3};
+
+/// Glass that absorbs nothing.
+pub const CLEAR: Interior = Interior::Volume { attenuation_colour: Vec3::ONE, attenuation_distance: f32::INFINITY };
 
 /// A white surface that scatters in this way.
 pub fn of(scattering: Scattering) -> Material {
@@ -18,9 +22,6 @@ pub fn of(scattering: Scattering) -> Material {
 pub fn standard(standard: Standard) -> Material {
     of(Scattering::Standard(Box::new(standard)))
 }
-
-/// Glass that absorbs nothing.
-pub const CLEAR: Interior = Interior::Volume { attenuation_colour: Vec3::ONE, attenuation_distance: f32::INFINITY };
 
 /// A white metal, which reflects all.
 pub fn metal(perceptual_roughness: f32) -> Material {
@@ -44,7 +45,7 @@ pub fn with_box(mut builder: SceneBuilder, name: &str, [low, high]: [Vec3; 2], m
     builder
 }
 
-/// A horizontal square of half a side `reach` at a height, facing up (`sign` = 1) or down (−1).
+/// Adds a horizontal square of half a side `reach` at a height, facing up (`sign` = 1) or down (−1).
 pub fn level(
     builder: SceneBuilder,
     name: &str,
@@ -55,20 +56,6 @@ pub fn level(
     let (z, x) = (2.0 * reach * Vec3::Z, 2.0 * reach * Vec3::X);
     let edges = if sign > 0.0 { [z, x] } else { [x, z] };
     builder.quad(name, Vec3::new(-reach, height, -reach), edges, material)
-}
-
-/// A closed room of side 2 around the origin whose walls are of albedo ½ and of radiance 1, whatever loses no light
-/// may stand in it: E = π everywhere.
-pub fn room_of_radiance_one() -> SceneBuilder {
-    let side = || glowing(0.5, 0.5);
-    SceneBuilder::default().room(Vec3::NEG_ONE, Vec3::ONE, [side(), side(), side(), side(), side(), side()])
-}
-
-/// Whether E = π on the walls of a furnace of radiance 1, seen by surface samples, which have the least noise there.
-pub fn furnace_of_one(scene: &Scene, samples: u32, tolerance: f64) -> Result<(), String> {
-    let transport = Transport { estimator: Estimator::Bsdf, ..Transport::default() };
-    let readings = light_by(scene, &on_walls(Vec3::NEG_ONE, Vec3::ONE, 2), samples, transport)?;
-    mean_reads(&readings, PI, tolerance)
 }
 
 /// A sphere of triangles: an octahedron, each triangle cut in four `levels` times, facing outwards.
@@ -93,46 +80,43 @@ pub fn sphere(centre: Vec3, radius: f32, levels: u32) -> (Vec<Vec3>, Vec<u32>) {
     (positions, indices)
 }
 
-/// What one pixel sees, and its standard error; an error if it is no light, or a path was lost.
-pub fn seen(scene: &Scene, [eye, target]: [Vec3; 2], samples_per_pixel: u32) -> Result<(DVec3, DVec3), String> {
-    let camera = Camera::look_at("eye", eye, target, 1e-6);
-    let transport = Transport::default();
-    let settings = PictureSettings { transport, width: 1, height: 1, samples_per_pixel, threads: None };
-    let picture = render_picture(scene, &camera, &settings, &(), &CancelToken::default());
-    let picture = picture.map_err(|error| error.to_string())?;
-    no_path_was_lost(&picture.report)?;
-    let (radiance, stderr) = (picture.radiance[0], picture.stderr[0]);
-    if radiance.is_finite() && stderr.is_finite() && radiance.min_element() >= 0.0 {
-        return Ok((radiance.as_dvec3(), stderr.as_dvec3()));
-    }
-    Err(format!("a pixel of {radiance} ± {stderr}"))
+/// A picture of these texels, row by row.
+pub fn picture([width, height]: [u32; 2], texels: Vec<[f32; 4]>, wrap: Wrap, filter: Filter) -> Texture {
+    Texture { name: "picture".into(), width, height, texels: Texels::Float(texels.into()), wrap: [wrap; 2], filter }
 }
 
-/// Whether one pixel sees this, its noise counted in.
-pub fn sees(scene: &Scene, look: [Vec3; 2], samples: u32, truth: f64, tolerance: f64) -> Result<(), String> {
-    let (radiance, stderr) = seen(scene, look, samples)?;
-    let off = (radiance - truth).abs() + 4.0 * stderr;
-    if off.max_element() <= tolerance {
-        Ok(())
-    } else {
-        Err(format!("seen {radiance} ± {stderr}, not {truth:.5} ± {tolerance}"))
+/// A scene of lights alone.
+pub fn lit_by(lights: impl IntoIterator<Item = Light>) -> Scene {
+    Scene { lights: lights.into_iter().collect(), ..Scene::default() }
+}
+
+/// A rectangle of 1 cd/m² at `centre` that shines along `direction`.
+pub fn rectangle(centre: Vec3, direction: Vec3, size: Vec2) -> RectLight {
+    let rotation = Quat::from_rotation_arc(Vec3::NEG_Z, direction.normalize());
+    RectLight {
+        id: StableId::new("rectangle"),
+        name: "rectangle".into(),
+        world_from_local: Affine3A::from_rotation_translation(rotation, centre),
+        width: size.x,
+        height: size.y,
+        radiance: Vec3::ONE,
+        range: None,
     }
 }
 
-/// Integral of a smooth function over [0, 1] by the midpoint rule.
-pub fn integrate(f: impl Fn(f64) -> f64) -> f64 {
-    let steps = 100_000;
-    (0..steps).map(|i| f((f64::from(i) + 0.5) / f64::from(steps))).sum::<f64>() / f64::from(steps)
+/// A sphere, or a point, of 1 cd.
+pub fn bulb(position: Vec3, radius: f32) -> PointLight {
+    let (id, name) = (StableId::new("bulb"), "bulb".into());
+    PointLight { id, name, position, intensity: Vec3::ONE, radius, range: None }
 }
 
-/// Unpolarised reflectance of a smooth interface (Born and Wolf 1999, § 1.5.2), 1 beyond the critical angle.
-pub fn fresnel(cosine: f64, eta: f64) -> f64 {
-    let sine_squared = (1.0 - cosine * cosine) / (eta * eta);
-    if sine_squared >= 1.0 {
-        return 1.0;
-    }
-    let refracted = (1.0 - sine_squared).sqrt();
-    let parallel = (eta * cosine - refracted) / (eta * cosine + refracted);
-    let perpendicular = (cosine - eta * refracted) / (cosine + eta * refracted);
-    0.5 * (parallel * parallel + perpendicular * perpendicular)
+/// A lamp at `position` that shines down into a cone, 1 cd on its axis.
+pub fn spot(position: Vec3, inner_angle: f32, outer_angle: f32) -> SpotLight {
+    SpotLight { bulb: bulb(position, 0.0), direction: Vec3::NEG_Y, inner_angle, outer_angle }
+}
+
+/// A sun of 1 lx, `towards` which one looks.
+pub fn sun(towards: Vec3, angular_diameter: f32) -> DirectionalLight {
+    let (id, name) = (StableId::new("sun"), "sun".into());
+    DirectionalLight { id, name, direction: -towards, illuminance: Vec3::ONE, angular_diameter }
 }

@@ -1,15 +1,22 @@
-//! Worlds for cases of place, distance and shape: a room, lights of every kind, and the same under another root.
+//! Whole scenes that several groups of cases use, and how a scene is moved, turned, scaled and joined with another.
+//!
+//! What scenes are made of is in [`crate::things`]; what is asked of them in [`crate::judge`].
 
 use crate::common::meter::at;
 use crate::common::scenes::{SceneBuilder, glowing, grey};
 use bevy_kiln::artefact::StableId;
 use bevy_kiln::bake::MeterPoint;
-use bevy_kiln::scene::{DirectionalLight, Light, PointLight, RectLight, Scene, SpotLight};
-use glam::{Affine3A, DVec3, Quat, Vec2, Vec3};
+use bevy_kiln::scene::{Light, PointLight, Scene};
+use glam::{Affine3A, DVec3, Mat3, Quat, Vec3};
 
 /// A turn after which no side of a box lies along an axis.
 pub fn askew() -> Quat {
     Quat::from_axis_angle(Vec3::new(0.48, 0.6, 0.64), 1.0)
+}
+
+/// The same turn, some metres away.
+pub fn askew_aside() -> Affine3A {
+    Affine3A::from_rotation_translation(askew(), Vec3::new(3.1, -2.7, 5.3))
 }
 
 /// The same scene under another root that scales alike in all directions: lights grow with it, so that their light
@@ -57,6 +64,37 @@ pub fn rounded_by(mut scene: Scene, offset: DVec3) -> Scene {
     scene
 }
 
+/// The same scene with its vertices moved to where their instances place them.
+fn in_world_space(mut scene: Scene) -> Scene {
+    for instance in &mut scene.instances {
+        for position in &mut scene.meshes[instance.mesh].positions {
+            *position = instance.world_from_local.transform_point3(*position);
+        }
+        instance.world_from_local = Affine3A::IDENTITY;
+    }
+    scene
+}
+
+/// The same scene, each of whose instances has an id of its name after this word.
+pub fn renamed(mut scene: Scene, word: &str) -> Scene {
+    for instance in &mut scene.instances {
+        instance.id = StableId::new(format!("{word} {}", instance.name));
+    }
+    scene
+}
+
+/// Both scenes' meshes in one, under the sky and the lights of the first.
+pub fn joined(mut scene: Scene, mut other: Scene) -> Scene {
+    for instance in &mut other.instances {
+        instance.mesh += scene.meshes.len();
+        instance.material += scene.materials.len();
+    }
+    scene.meshes.append(&mut other.meshes);
+    scene.materials.append(&mut other.materials);
+    scene.instances.append(&mut other.instances);
+    scene
+}
+
 /// A closed room of 2 m with a glowing panel under its ceiling and a tilted board, turned askew.
 pub fn room() -> Scene {
     in_world_space(under(level_room(), Affine3A::from_quat(askew())))
@@ -72,17 +110,6 @@ pub fn level_room() -> Scene {
         .build()
 }
 
-/// The same scene with its vertices moved to where their instances place them.
-pub fn in_world_space(mut scene: Scene) -> Scene {
-    for instance in &mut scene.instances {
-        for position in &mut scene.meshes[instance.mesh].positions {
-            *position = instance.world_from_local.transform_point3(*position);
-        }
-        instance.world_from_local = Affine3A::IDENTITY;
-    }
-    scene
-}
-
 /// Points in the air of [`room`], on the grid that f32 has 10⁵ m away.
 pub fn in_the_room() -> Vec<MeterPoint> {
     let grid = |point: Vec3| (point * 128.0).round() / 128.0;
@@ -96,38 +123,27 @@ pub fn in_the_room() -> Vec<MeterPoint> {
     .to_vec()
 }
 
-/// A scene of lights alone.
-pub fn lit_by(lights: impl IntoIterator<Item = Light>) -> Scene {
-    Scene { lights: lights.into_iter().collect(), ..Scene::default() }
+/// A closed room of side 2 around the origin whose walls are of albedo ½ and of radiance 1, whatever loses no light
+/// may stand in it: E = π everywhere.
+pub fn room_of_radiance_one() -> SceneBuilder {
+    SceneBuilder::default().room(Vec3::NEG_ONE, Vec3::ONE, [(); 6].map(|()| glowing(0.5, 0.5)))
 }
 
-/// A rectangle of 1 cd/m² at `centre` that shines along `direction`.
-pub fn rectangle(centre: Vec3, direction: Vec3, size: Vec2) -> RectLight {
-    let rotation = Quat::from_rotation_arc(Vec3::NEG_Z, direction.normalize());
-    RectLight {
-        id: StableId::new("rectangle"),
-        name: "rectangle".into(),
-        world_from_local: Affine3A::from_rotation_translation(rotation, centre),
-        width: size.x,
-        height: size.y,
-        radiance: Vec3::ONE,
-        range: None,
-    }
+/// A closed box of side 2 around the origin of this albedo, under a sky of this radiance [cd/m²]: it is dark inside.
+pub fn dark_box(albedo: f32, sky: f32) -> Scene {
+    SceneBuilder::default().room(Vec3::NEG_ONE, Vec3::ONE, [albedo; 6].map(grey)).sky(Vec3::splat(sky)).build()
 }
 
-/// A sphere, or a point, of 1 cd.
-pub fn bulb(position: Vec3, radius: f32) -> PointLight {
-    let (id, name) = (StableId::new("bulb"), "bulb".into());
-    PointLight { id, name, position, intensity: Vec3::ONE, radius, range: None }
+/// A root under which that box's floor and its −x wall meet at 40°, as its ceiling and its +x wall do.
+pub fn leaning() -> Affine3A {
+    askew_aside() * Affine3A::from_mat3(Mat3::from_cols(Vec3::X, Vec3::new(1.2, 1.0, 0.0), Vec3::Z))
 }
 
-/// A lamp at `position` that shines down into a cone, 1 cd on its axis.
-pub fn spot(position: Vec3, inner_angle: f32, outer_angle: f32) -> SpotLight {
-    SpotLight { bulb: bulb(position, 0.0), direction: Vec3::NEG_Y, inner_angle, outer_angle }
-}
-
-/// A sun of 1 lx, `towards` which one looks.
-pub fn sun(towards: Vec3, angular_diameter: f32) -> DirectionalLight {
-    let (id, name) = (StableId::new("sun"), "sun".into());
-    DirectionalLight { id, name, direction: -towards, illuminance: Vec3::ONE, angular_diameter }
+/// Points in the box that leans, a millimetre from its narrow edges.
+pub fn near_narrow_edges() -> Vec<MeterPoint> {
+    let along = [-0.9, -1.0 / 3.0, -0.332, 0.4, 0.999];
+    let sides = [(Vec3::new(-0.999, -1.0, 0.0), Vec3::Y), (Vec3::new(0.999, 1.0, 0.0), Vec3::NEG_Y)];
+    let point =
+        |(place, facing): (Vec3, Vec3), z: f32| at(leaning().transform_point3(place.with_z(z)), askew() * facing);
+    sides.into_iter().flat_map(|side| along.map(|z| point(side, z))).collect()
 }

@@ -20,14 +20,15 @@ use std::time::Duration;
 
 const EQUAL_SEEDS: &str = "one seed for all of them: what one has too much of, its neighbour has too";
 const BLOTCHES: &str = "one noise pattern over all texels: blotches and stripes that no denoiser takes for noise";
-const CORRELATION: &str = "correlation of their errors within 4.5 standard deviations of 0";
+const CORRELATION: &str =
+    "the correlation of their errors is 0 to 4.5 standard deviations, beyond which chance goes once in 150 000 times";
 
 pub const CASES: &[Case] = &[
     Case {
         name: "more_samples_than_the_sequence_has",
         hard: "2^21 samples, each of 16 runs twice as long as the Sobol sequence of 2^16",
         elsewhere: "the sequence begins again: more samples, the same answer",
-        holds: "the first half differs from the whole, E right to 3e-4",
+        holds: "the first half differs from the whole, E = π·F (Howell B-3) within 3e-4",
         guard: &BLOCKS,
         without: "twice the samples give the same bits",
         check: longer_than_the_sequence,
@@ -90,7 +91,7 @@ pub const CASES: &[Case] = &[
         name: "errors_are_honest",
         hard: "samples of one Sobol sequence are not independent: their own spread says nothing of their mean's error",
         elsewhere: "the variance of single samples is taken for that of the mean's error",
-        holds: "root mean square of error over standard error within 0.93 to 1.2 (Student's t, 15 degrees: 1.07)",
+        holds: "root mean square of error over standard error is 0.93 to 1.2 (Student's t, 15 degrees: 1.07)",
         guard: &KEY_OF_REPLICATE,
         without: "replicates repeat each other: errors are larger than told",
         check: honest_errors,

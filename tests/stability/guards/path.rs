@@ -82,7 +82,7 @@ pub static BODY_LEARNT: Guard = Guard {
     }],
 };
 
-pub static DIMMING: Guard = Guard {
+pub static NO_ZERO_TIMES_INFINITY: Guard = Guard {
     name: "absorption without 0 · ∞",
     does: "a channel that a body does not absorb is left alone whatever the way, so that 0 · ∞ is not computed",
     edits: &[Edit {
