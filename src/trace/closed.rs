@@ -19,12 +19,16 @@ impl Tracer {
             && (0..walks).all(|walk| self.stays_inside(&Sobol::new(key, walk)))
     }
 
-    /// Follows a path from a source until it ends, as one from a receiver is followed: by what surfaces really do.
+    /// Follows a path from a source until it ends, as one from a receiver is followed: by what surfaces really do. One
+    /// that nothing ends but mirrors and clear glass alone have kept, as a lamp's in a solid block of glass by total
+    /// reflection, is none that a receiver could meet: the same way leads there and back.
     pub(crate) fn follow_from_source(&self, sampler: &Sobol, transport: &Transport, tally: &mut Tally) {
         let [u_choice, ..] = sampler.draw(Dimensions::Start);
         let departure = self.lights.depart(u_choice, sampler.draw(Dimensions::Light { vertex: 0 }));
         if let Some((origin, direction)) = departure {
-            self.radiance_along(origin, direction, sampler, transport, tally);
+            let mut own = Tally::default();
+            self.radiance_along(origin, direction, sampler, transport, &mut own);
+            tally.kept_by = own.kept_by.filter(|_| own.was_spread);
         }
     }
 

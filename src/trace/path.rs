@@ -37,6 +37,8 @@ pub(crate) struct Tally {
     pub(crate) endless: u64,
     /// The number of the material at which the last of those was.
     pub(crate) kept_by: Option<u32>,
+    /// Whether any surface had spread that path out, which mirrors and clear glass do not.
+    pub(crate) was_spread: bool,
 }
 
 impl Tracer {

@@ -1,5 +1,6 @@
 //! The pilot: a few texels, traced to tell what all of them will cost.
 
+use crate::bake::endless::refuse_endless_texels;
 use crate::bake::gather::{Estimate, Paths, relative_error};
 use crate::bake::plan::Prediction;
 use crate::bake::sites::Site;
@@ -47,8 +48,10 @@ impl<'a> Pilot<'a> {
 
     /// Share of the time that each effect which is on costs: what is saved where it is forced off.
     pub(super) fn cost_shares(&self, scene: &Scene, tracer: &Tracer) -> Result<Vec<(Effect, f64)>, BakeError> {
-        let effects: Vec<Effect> = tracer.effects().iter().collect();
-        let without: Vec<Tracer> = effects.iter().map(|&effect| self.without(scene, tracer, effect)).collect();
+        let without = tracer.effects().iter().map(|effect| (effect, self.without(scene, tracer, effect)));
+        // A window may be all that lets light out of a white room, whose paths have no end without it.
+        let ends = |tracer: &Tracer| refuse_endless_texels(scene, tracer, &self.settings.transport, self.sites).is_ok();
+        let (effects, without): (Vec<Effect>, Vec<Tracer>) = without.filter(|(_, tracer)| ends(tracer)).unzip();
         let mut all = Vec::new();
         let mut rest: Vec<Vec<f64>> = vec![Vec::new(); effects.len()];
         // In turns, so that whatever else the machine does falls on all alike.
@@ -94,4 +97,55 @@ impl<'a> Pilot<'a> {
 /// The least of several times: what the machine took when nothing else disturbed it.
 fn least(seconds: &[f64]) -> f64 {
     seconds.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::artefact::StableId;
+    use crate::bake::{BakePlan, BakeSettings};
+    use crate::scene::{Alpha, Indices, Instance, LightmapRequest, Material, Mesh, Scene};
+    use crate::trace::Effect;
+    use glam::{Affine3A, Quat, Vec2, Vec3, Vec4};
+    use std::f32::consts::FRAC_PI_2;
+
+    /// A white cube with a window in place of its ceiling.
+    fn room() -> Scene {
+        let square = Mesh {
+            name: "square".into(),
+            indices: Indices::U16(vec![0, 2, 1, 0, 3, 2]),
+            positions: [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(|[x, z]| Vec3::new(x as f32, -1.0, z as f32)).to_vec(),
+            uv1: Some(vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y]),
+            ..Mesh::default()
+        };
+        let white = Material::diffuse("white", Vec3::ONE);
+        let pane = Material { base_colour: Vec4::new(1.0, 1.0, 1.0, 0.1), alpha: Alpha::Blend, ..white.clone() };
+        let around = [0.0, 1.0, 2.0, 3.0].map(|turns| Quat::from_rotation_z(turns * FRAC_PI_2));
+        let across = [-1.0, 1.0].map(|turns| Quat::from_rotation_x(turns * FRAC_PI_2));
+        let side = |(index, rotation): (usize, Quat)| Instance {
+            id: StableId::new(format!("side {index}")),
+            name: format!("side {index}"),
+            mesh: 0,
+            material: usize::from(index == 2),
+            world_from_local: Affine3A::from_quat(rotation),
+            lightmap: (index != 2).then(LightmapRequest::default),
+        };
+        Scene {
+            meshes: vec![square],
+            materials: vec![white, pane],
+            instances: around.into_iter().chain(across).enumerate().map(side).collect(),
+            sky_radiance: Vec3::ONE,
+            ..Scene::default()
+        }
+    }
+
+    /// What lets light out of a white room has no price: without it no path ends.
+    #[test]
+    fn the_only_window_of_a_white_room_has_no_price() {
+        let settings = BakeSettings { density: 1.0, ..BakeSettings::default() };
+        let plan = BakePlan::for_scene(&room(), &settings).unwrap();
+        let of = |effect| plan.effects.iter().find(|planned| planned.effect == effect).unwrap();
+        let window = of(Effect::Transparency);
+        assert!(window.on && window.cost_share.is_none(), "{window:?}");
+        assert!(of(Effect::ConstantSky).cost_share.is_some());
+    }
 }

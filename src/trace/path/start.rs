@@ -67,6 +67,12 @@ impl Tracer {
                 (below, above) => below.or(above),
             }
         });
+        // In the surface's own plane it is seen from neither side, and by a slanted ray only as exactly as the ray is;
+        // in a crack between tiles, as wide as their rounding, not at all.
+        let wide = rounding + 1e-6 * self.extent;
+        let (u, v) = normal.any_orthonormal_pair();
+        let beside = [Vec3::ZERO, u, -u, v, -v].map(|aside| position + wide * (normal + aside));
+        let nearest = nearest.or_else(|| beside.into_iter().find_map(|from| meet(from, -normal, 2.0 * wide)));
         match nearest {
             Some(hit) => self.start_on_triangle(hit.triangle, hit.barycentric, normal),
             None => PathStart::free(position, normal),

@@ -3,9 +3,10 @@
 
 use super::walk::{ROULETTE_THROUGHPUT, survival_probability};
 use super::{PathStart, Tally};
+use crate::artefact::StableId;
 use crate::math::testing::{Random, mean_and_error, mean_within};
 use crate::math::{Frame, combine, square_to_cosine_hemisphere, square_to_triangle};
-use crate::scene::{Interior, Material, Scattering, Standard};
+use crate::scene::{Interior, Light, Material, PointLight, Scattering, Standard};
 use crate::trace::light::{End, LightContext};
 use crate::trace::mis::power_heuristic;
 use crate::trace::sampler::{Dimensions, Sampler};
@@ -214,6 +215,52 @@ fn a_path_that_nothing_ends_is_cut_and_counted() {
     let mut tally = Tally::default();
     tracer.diffuse_radiance(&start, &Sobol::new(1, 0), &capped, &mut tally);
     assert_eq!((tally.endless, tally.rays), (0, 101));
+}
+
+/// A lamp's light in a solid block of glass may go round for ever, but in no way that a receiver could find.
+#[test]
+fn light_that_total_reflection_keeps_is_no_fault() {
+    let interior = Interior::Volume { attenuation_colour: Vec3::ONE, attenuation_distance: f32::INFINITY };
+    let glass = Standard { specular_transmission: 1.0, perceptual_roughness: 0.0, interior, ..Standard::default() };
+    let material = Material::scattering("glass", Vec3::ONE, Scattering::Standard(Box::new(glass)));
+    // The cube faces inwards: mirrored, outwards.
+    let mut scene = Shape::cube().moved(|v| Vec3::new(1.0 - v.x, v.y, v.z)).scene(material, Affine3A::IDENTITY);
+    let (id, name) = (StableId::new("lamp"), "lamp".into());
+    let position = Vec3::new(0.51, 0.49, 0.52);
+    let lamp = PointLight { id, name, position, intensity: Vec3::ONE, radius: 0.2, range: None };
+    scene.lights.push(Light::Point(lamp));
+    let tracer = Tracer::new(&scene);
+    let mut endless = 0;
+    for index in 0..64 {
+        let sampler = Sobol::new(9, index);
+        let mut tally = Tally::default();
+        let way = Vec3::new(1.0, 0.9, 0.8 + 0.003 * index as f32).normalize();
+        tracer.radiance_along(position, way, &sampler, &Transport::default(), &mut tally);
+        assert!(!tally.was_spread);
+        endless += tally.endless;
+        let mut tally = Tally::default();
+        tracer.follow_from_source(&sampler, &Transport::default(), &mut tally);
+        assert_eq!(tally.kept_by, None);
+    }
+    assert!(endless > 16, "{endless}");
+}
+
+/// A meter in the very plane of its floor lies on it, however it is tilted; and so does one in a crack between tiles.
+#[test]
+fn a_meter_in_a_plane_or_in_a_crack_lies_on_the_floor() {
+    let tile = |[low, high]: [f32; 2]| {
+        [Vec3::new(low, 0.0, -50.0), Vec3::new(low, 0.0, 50.0), Vec3::new(high, 0.0, 50.0), Vec3::new(high, 0.0, -50.0)]
+    };
+    let crack = 1.0_f32.next_up();
+    let positions = [tile([-50.0, 1.0]), tile([crack.next_up(), 50.0])].concat();
+    let triangles = vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
+    let tracer = Shape { positions, triangles }.tracer(Affine3A::IDENTITY);
+    for place in [Vec3::new(1.0, 0.0, 2.0), Vec3::new(crack, 0.0, 2.0), Vec3::new(crack, 0.0, 0.3)] {
+        for facing in [Vec3::Y, Vec3::new(1.0, 0.3, 0.0), Vec3::new(-0.2, 0.1, 1.0)] {
+            let start = tracer.start_at(place, facing.normalize());
+            assert_eq!(start.geometric_normal, Vec3::Y, "{place} {facing}");
+        }
+    }
 }
 
 /// A start that lies in a body learns so at the first surface that it meets from behind, and not at one from before.

@@ -54,6 +54,8 @@ pub(super) struct Walk<'t, const K: u32, S> {
     concentration: f32,
     /// The triangle that it is at.
     triangle: u32,
+    /// Whether a surface has spread it out, so that it might have gone elsewhere.
+    is_spread: bool,
 }
 
 impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
@@ -73,6 +75,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             knows_body: false,
             concentration: 1.0,
             triangle: 0,
+            is_spread: false,
         }
     }
 
@@ -112,6 +115,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             if self.number >= MAX_VERTICES {
                 self.tally.endless += 1;
                 self.tally.kept_by = Some(self.tracer.surface_of[self.triangle as usize]);
+                self.tally.was_spread = self.is_spread;
                 return;
             }
         }
@@ -147,6 +151,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             self.concentration *= vertex.bsdf.concentration();
         }
         self.throughput *= sample.weight;
+        self.is_spread |= matches!(sample.density, Density::Smooth(_));
         Some(Ray { origin, direction, context, density: sample.density, survival: Some(u_survive) })
     }
 
