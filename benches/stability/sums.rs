@@ -1,4 +1,4 @@
-//! How long the sum: the mean of a thousand to a milliard samples, few of them bright and most of them dim, as paths
+//! How long the sum: the mean of a thousand to a billion samples, few of them bright and most of them dim, as paths
 //! bring them. Every value is a whole multiple of 2⁻³⁹, so that the true mean is known to the last digit.
 
 use crate::sweep::{Axis, Curve, Effort, Side, Sweep};
@@ -41,7 +41,7 @@ pub fn sweep(effort: Effort) -> Sweep {
     let [ours, single, half] = errors;
     Sweep {
         name: "sums",
-        title: "A milliard samples",
+        title: "A billion samples",
         about: format!(
             "The mean of so many values in [0, 1), most of them dim; the true one by whole numbers. Ours: {REPLICATES}\n\
              sums in f64. Naive: one running sum in f32, or in half floats as in Godot's rgba16f accumulators.\n\

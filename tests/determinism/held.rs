@@ -23,13 +23,13 @@ pub struct Held {
 pub const HELD: [Held; 3] = [
     Held {
         name: "cornell",
-        hash: 0x6e19_c1bf_0f8c_1533,
+        hash: 0xe8dc_30d1_b01a_87f9,
         scene: || glb::load("cornell"),
         density: 1.0,
         layout: Layout::Shared { size: 32 },
     },
     Held { name: "garden", hash: 0x5372_f327_8594_d685, scene: garden, density: 5.0, layout: Layout::Packed },
-    Held { name: "vitrine", hash: 0x8b9a_5018_6a55_96df, scene: vitrine, density: 4.0, layout: Layout::Packed },
+    Held { name: "vitrine", hash: 0x33e0_3445_8110_c30f, scene: vitrine, density: 4.0, layout: Layout::Packed },
 ];
 
 impl Held {
