@@ -10,6 +10,7 @@ use bevy_kiln::scene::{
     Texture, TextureRef, UvChannel, Wrap,
 };
 use bevy_kiln::trace::{Estimator, Transport};
+use common::fresnel::fresnel;
 use common::meter::{at, by, mean, on_walls, read};
 use common::scenes::{SceneBuilder, glowing, grey};
 use common::statistics::mean_within;
@@ -30,18 +31,6 @@ fn standard(standard: Standard) -> Scattering {
 fn integrate(f: impl Fn(f64) -> f64) -> f64 {
     let steps = 100_000;
     (0..steps).map(|i| f((f64::from(i) + 0.5) / f64::from(steps))).sum::<f64>() / f64::from(steps)
-}
-
-/// Unpolarised reflectance of a smooth interface, 1 beyond the critical angle.
-fn fresnel(cosine: f64, eta: f64) -> f64 {
-    let sine_squared = (1.0 - cosine * cosine) / (eta * eta);
-    if sine_squared >= 1.0 {
-        return 1.0;
-    }
-    let refracted = (1.0 - sine_squared).sqrt();
-    let parallel = (eta * cosine - refracted) / (eta * cosine + refracted);
-    let perpendicular = (cosine - eta * refracted) / (cosine + eta * refracted);
-    0.5 * (parallel * parallel + perpendicular * perpendicular)
 }
 
 /// A wall that is a perfect mirror shows the lamp a second time, as far behind it: light by a path E D S L.

@@ -12,18 +12,6 @@ pub fn integrate(f: impl Fn(f64) -> f64) -> f64 {
     (0..steps).map(|i| f((f64::from(i) + 0.5) / f64::from(steps))).sum::<f64>() / f64::from(steps)
 }
 
-/// Unpolarised reflectance of a smooth interface (Born and Wolf 1999, § 1.5.2), 1 beyond the critical angle.
-pub fn fresnel(cosine: f64, eta: f64) -> f64 {
-    let sine_squared = (1.0 - cosine * cosine) / (eta * eta);
-    if sine_squared >= 1.0 {
-        return 1.0;
-    }
-    let refracted = (1.0 - sine_squared).sqrt();
-    let parallel = (eta * cosine - refracted) / (eta * cosine + refracted);
-    let perpendicular = (cosine - eta * refracted) / (cosine + eta * refracted);
-    0.5 * (parallel * parallel + perpendicular * perpendicular)
-}
-
 /// ∫ max(0, cos) over a cone of directions about an axis at this elevation above the horizon [rad], by midpoints.
 pub fn cone_above_horizon(elevation: f64, half_angle: f64) -> f64 {
     let (rings, spokes) = (400, 400);

@@ -151,9 +151,12 @@ fn answers(tracer: &Tracer, [point, other]: [Vec3; 2], index: u64) -> Vec<u32> {
     let hit = tracer.closest_hit(point, direction).expect("the room is closed");
     let aim = tracer.aim(point, direction, w, Vec2::new(v, u));
     let looked = tracer.camera_radiance(point, direction, &sampler, &transport, &mut Tally::default());
-    // Off all surfaces by more than the rounding of a point far away, which start_at makes allowance for.
-    let above = tracer.traced_from_world.point(point) + 0.02 * direction;
-    let is_clear = tracer.accel.closest(above, -direction, 0.04).is_none();
+    // Off all surfaces, on all sides, by more than the rounding of a point far away, which start_at makes allowance for.
+    let traced = tracer.traced_from_world.point(point);
+    let is_free = |towards: Vec3| tracer.accel.closest(traced, towards, 0.04).is_none();
+    let steps = [-1.0, 0.0, 1.0];
+    let around = steps.into_iter().flat_map(|x| steps.into_iter().flat_map(move |y| steps.map(|z| Vec3::new(x, y, z))));
+    let is_clear = around.filter_map(Vec3::try_normalize).all(is_free);
     let start =
         if is_clear { tracer.start_at(point, direction) } else { tracer.start_on_triangle(3, [0.3, 0.3], Vec3::Y) };
     let measured = tracer.diffuse_radiance(&start, &sampler, &transport, &mut Tally::default());

@@ -8,6 +8,7 @@ use crate::guards::crossings::{
     FAR_ORIGINS, FAR_TARGETS, METER_ROUNDING, NEAREST_SURFACE, NO_MINUS_ZERO, PADDING, SIDE_IN_F64, TRACED_FRAME,
 };
 use crate::judge::{agree, all_read, baked, ensure, light_at, light_by, mean_reads};
+use crate::worlds::under;
 use bevy_kiln::artefact::StableId;
 use bevy_kiln::bake::BakeSettings;
 use bevy_kiln::math::{combine, corner_parallel_rectangle};
@@ -157,13 +158,6 @@ pub const CASES: &[Case] = &[
 /// An awkward rotation.
 fn turn() -> Affine3A {
     Affine3A::from_quat(Quat::from_scaled_axis(Vec3::new(0.3, -1.1, 0.7)))
-}
-
-fn under(mut scene: Scene, root: Affine3A) -> Scene {
-    for instance in &mut scene.instances {
-        instance.world_from_local = root * instance.world_from_local;
-    }
-    scene
 }
 
 /// A number in [0, 1) for a count.

@@ -2,13 +2,14 @@
 
 use super::CUT;
 use crate::case::{Case, Verdict};
+use crate::common::fresnel::fresnel;
 use crate::common::meter::at;
 use crate::common::scenes::{SceneBuilder, glowing, grey};
 use crate::guards::bsdf::INDEX_TURNED;
 use crate::guards::path::{NUMBER_DEALT_ANEW, SURVIVAL_AT_MOST_ONE};
 use crate::judge::{light_at, mean_reads, reads};
 use crate::things::{level, of, standard};
-use crate::truths::{fresnel, integrate};
+use crate::truths::integrate;
 use bevy_kiln::bake::MeterPoint;
 use bevy_kiln::scene::{Scattering, Standard};
 use glam::Vec3;

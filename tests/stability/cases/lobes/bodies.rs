@@ -1,13 +1,14 @@
 //! Bodies that bend and absorb, seen by a receiver in them.
 
 use crate::case::{Case, Verdict};
+use crate::common::fresnel::fresnel;
 use crate::common::meter::at;
 use crate::common::scenes::{SceneBuilder, grey};
 use crate::guards::bsdf::RADIANCE_BY_INDEX;
 use crate::guards::path::{BODY_LEARNT, NO_ZERO_TIMES_INFINITY};
 use crate::judge::{light_at, reads};
 use crate::things::{CLEAR, level, standard};
-use crate::truths::{fresnel, integrate};
+use crate::truths::integrate;
 use bevy_kiln::bake::MeterReading;
 use bevy_kiln::scene::{Interior, Standard};
 use glam::{DVec3, Vec3};

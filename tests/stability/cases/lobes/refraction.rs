@@ -2,13 +2,13 @@
 
 use super::UNSEEN;
 use crate::case::{Case, Verdict};
+use crate::common::fresnel::fresnel;
 use crate::common::meter::at;
 use crate::common::scenes::{SceneBuilder, glowing, grey};
 use crate::guards::bsdf::{INDEX_TURNED, MATCHED, RADIANCE_BY_INDEX, TOTAL_REFLECTION};
 use crate::judge::{all_read, light_at};
 use crate::look::{furnace_of_one, sees, vanishes};
 use crate::things::{glass, level, of, sphere, with_box};
-use crate::truths::fresnel;
 use crate::worlds::{joined, renamed, room_of_radiance_one};
 use bevy_kiln::scene::Scattering;
 use glam::Vec3;
