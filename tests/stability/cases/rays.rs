@@ -12,7 +12,7 @@ use crate::worlds::under;
 use bevy_kiln::artefact::StableId;
 use bevy_kiln::bake::BakeSettings;
 use bevy_kiln::math::{combine, corner_parallel_rectangle};
-use bevy_kiln::scene::{Light, PointLight, Scene};
+use bevy_kiln::scene::{Light, PointLight};
 use bevy_kiln::trace::{Estimator, Tracer};
 use glam::{Affine3A, Quat, Vec3};
 use std::f64::consts::PI;
