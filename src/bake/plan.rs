@@ -23,8 +23,8 @@ pub struct PlannedEffect {
     /// Why, in words and numbers.
     pub reason: String,
     /// Share of the predicted time that the bake would save without it at as many paths, as a short pilot measured
-    /// it; `None` for an effect that is off, and for one without which light would be kept for ever. The shares do not add up to 1: without a light, for instance, what it
-    /// lights costs nothing either.
+    /// it; `None` for an effect that is off, and for one without which light would be kept for ever. The shares do not
+    /// add up to 1: without a light, for instance, what it lights costs nothing either.
     pub cost_share: Option<f64>,
 }
 
