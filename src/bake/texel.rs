@@ -14,7 +14,7 @@ const ALBEDO_GRID: u32 = 4;
 struct Patch {
     /// World number of the triangle.
     triangle: u32,
-    /// Unit shading normals of its vertices, or zeros for a flat one.
+    /// Unit shading normals of its vertices, or zeros for a flat one, which is then its own.
     normals: [Vec3; 3],
     corner: DVec2,
     edges: [DVec2; 2],
@@ -103,14 +103,7 @@ impl Texel {
     /// A start of paths at a point of the covered part, uniform over its area in the texel.
     pub(super) fn start(&self, tracer: &Tracer, u: Vec2) -> PathStart {
         let (patch, barycentric) = self.point(u);
-        let [second, third] = barycentric;
-        let [a, b, c] = patch.normals;
-        let smooth = a * (1.0 - second - third) + b * second + c * third;
-        let flat = tracer.normal(patch.triangle);
-        let normal = smooth.try_normalize().unwrap_or(flat);
-        // Normals that point into the surface come from broken exports; the flat one is then the better guess.
-        let normal = if normal.dot(flat) > 0.0 { normal } else { flat };
-        tracer.start_on_triangle(patch.triangle, barycentric, normal)
+        tracer.start_on_smooth_triangle(patch.triangle, barycentric, patch.normals)
     }
 
     /// Mean albedo of the covered part.

@@ -146,7 +146,15 @@ pub const CASES: &[Case] = &[
 /// A page of four covered grey texels.
 fn page(values: &[f32; 4]) -> Page {
     let radiance: Vec<Vec3> = values.iter().map(|&value| Vec3::splat(value)).collect();
-    Page { width: 2, height: 2, raw: radiance.clone(), stderr: vec![Vec3::ZERO; 4], radiance, coverage: vec![1.0; 4] }
+    Page {
+        width: 2,
+        height: 2,
+        raw: radiance.clone(),
+        stderr: vec![Vec3::ZERO; 4],
+        radiance,
+        coverage: vec![1.0; 4],
+        ..Page::default()
+    }
 }
 
 /// Colours of a file's texels, by the formats' own definitions.
