@@ -36,7 +36,8 @@ pub struct Page {
     pub height: u32,
     /// E/π after all repair, E being the irradiance [cd/m²].
     pub radiance: Vec<Vec3>,
-    /// Share of the texel's area that triangles cover, in [0, 1]; 0 where dilated, hidden or empty.
+    /// Share of the texel's area that triangles cover, in [0, 1], but for what was found to be out of sight; 0 where
+    /// dilated, hidden or empty. The texel's value is the mean over that share.
     pub coverage: Vec<f32>,
     /// E/π as measured, before repair [cd/m²].
     pub raw: Vec<Vec3>,
@@ -136,7 +137,7 @@ fn pages(fields: Vec<Field>, sites: &[Site], estimates: &[Estimate]) -> Vec<Page
     let mut pages: Vec<Page> = fields.into_iter().map(page).collect();
     for (Site { covered, .. }, estimate) in sites.iter().zip(estimates) {
         let page = &mut pages[covered.page as usize];
-        page.coverage[covered.index as usize] = covered.texel.coverage.min(1.0) as f32;
+        page.coverage[covered.index as usize] = (covered.texel.coverage.min(1.0) * estimate.accepted) as f32;
         page.raw[covered.index as usize] = estimate.mean.as_vec3();
     }
     pages

@@ -9,6 +9,9 @@ use glam::{DVec2, Vec2, Vec3};
 /// Points along each side of a texel at which its albedo is looked up.
 const ALBEDO_GRID: u32 = 4;
 
+/// How far a point that stands for others is drawn to the middle of its piece.
+const FROM_BORDER: f32 = 0.15;
+
 /// A piece of a triangle inside a texel, in weights of the triangle's second and third vertex.
 #[derive(Clone, Copy, Debug)]
 struct Patch {
@@ -28,6 +31,17 @@ struct Patch {
 enum PatchShape {
     Triangle,
     Parallelogram,
+}
+
+impl Patch {
+    /// Weights of the second and third vertex in its middle.
+    fn middle(&self) -> DVec2 {
+        let share = match self.shape {
+            PatchShape::Triangle => 1.0 / 3.0,
+            PatchShape::Parallelogram => 0.5,
+        };
+        self.corner + (self.edges[0] + self.edges[1]) * share
+    }
 }
 
 /// The covered part of one texel.
@@ -104,6 +118,15 @@ impl Texel {
     pub(super) fn start(&self, tracer: &Tracer, u: Vec2) -> PathStart {
         let (patch, barycentric) = self.point(u);
         tracer.start_on_smooth_triangle(patch.triangle, barycentric, patch.normals)
+    }
+
+    /// A start that stands for the places around it: the same, drawn away from the borders of the piece that it lies on,
+    /// where other surfaces often meet this one.
+    pub(super) fn inner_start(&self, tracer: &Tracer, u: Vec2) -> PathStart {
+        let (patch, [second, third]) = self.point(u);
+        let middle = patch.middle();
+        let weights = Vec2::new(second, third).lerp(middle.as_vec2(), FROM_BORDER);
+        tracer.start_on_smooth_triangle(patch.triangle, weights.to_array(), patch.normals)
     }
 
     /// Mean albedo of the covered part.

@@ -37,6 +37,8 @@ pub(super) struct Footing {
     pub(super) anchor: PathStart,
     /// Whether the texel lies inside of bodies, and in the dark.
     pub(super) is_hidden: bool,
+    /// Whether a part of the texel that is seen cannot be reached from there.
+    pub(super) is_split: bool,
     /// The neighbours that can be reached from here.
     pub(super) links: Links,
 }
@@ -124,7 +126,8 @@ fn footing(tracer: &Tracer, covered: &Covered, settings: &BakeSettings) -> Footi
     let best = best.unwrap_or(0);
     let anchor = parts[best].anchor;
     let is_hidden = enclosed[best] && is_dark(tracer, &anchor, covered.key, &settings.transport);
-    Footing { anchor, is_hidden, links: Links::default() }
+    let is_split = (0..parts.len()).any(|part| part != best && !enclosed[part]);
+    Footing { anchor, is_hidden, is_split, links: Links::default() }
 }
 
 /// Places of a texel that see each other.
@@ -139,7 +142,7 @@ fn parts(tracer: &Tracer, texel: &Texel) -> Vec<Part> {
     for index in 0..CANDIDATES {
         // From the middle outwards (Roberts 2018).
         let place = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_2) * index as f64 + 0.5;
-        let start = texel.start(tracer, (place - place.floor()).as_vec2());
+        let start = texel.inner_start(tracer, (place - place.floor()).as_vec2());
         match parts.iter_mut().find(|part| tracer.is_open_between(&part.anchor, &start)) {
             Some(part) => part.size += 1,
             None => parts.push(Part { anchor: start, size: 1 }),

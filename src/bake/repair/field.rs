@@ -40,6 +40,8 @@ pub(in crate::bake) struct Field {
     pub(in crate::bake) normal: Vec<Vec3>,
     /// The neighbours, in its chart, that can be reached from it without passing through a surface.
     pub(in crate::bake) links: Vec<Links>,
+    /// Whether a part of it that is seen cannot be reached from that place.
+    pub(in crate::bake) is_split: Vec<bool>,
 }
 
 impl Field {
@@ -56,6 +58,7 @@ impl Field {
             position: vec![Vec3::ZERO; count],
             normal: vec![Vec3::ZERO; count],
             links: vec![Links::default(); count],
+            is_split: vec![false; count],
         }
     }
 
@@ -70,6 +73,7 @@ impl Field {
         self.position[index] = site.footing.anchor.position();
         self.normal[index] = site.footing.anchor.normal();
         self.links[index] = site.footing.links;
+        self.is_split[index] = site.footing.is_split;
     }
 
     /// Notes that nobody sees a texel.
