@@ -1,6 +1,7 @@
 //! A surface cut into charts: few, compact ones where it can be, and simple ones where that would take too long.
 
-use super::flatten::{alone, along, flatten, is_sound};
+use super::flatten::{Limits, alone, along, flatten, is_sound};
+use super::merge::merge;
 use super::patch::{Chart, Patch};
 use super::split::split;
 use super::surface::Surface;
@@ -76,14 +77,15 @@ fn of_patch(
 ) -> Option<(Vec<Chart>, UnwrapMethod)> {
     let mut charts = Vec::new();
     let mut method = UnwrapMethod::Charts;
-    let mut open = vec![patch];
+    let mut open = vec![patch.clone()];
+    let whole = patch;
     while let Some(patch) = open.pop() {
         if work.is_cancelled() {
             return None;
         }
         if patch.len() == 1 {
             charts.push(alone(surface, patch.triangles[0]));
-        } else if let Some(chart) = flatten(surface, &patch, work) {
+        } else if let Some(chart) = flatten(surface, &patch, &Limits::ALONE, work) {
             charts.push(chart);
         } else if let Some(parts) = split(surface, &patch, work).filter(|parts| parts.len() > 1) {
             open.extend(parts.into_iter().rev());
@@ -92,7 +94,8 @@ fn of_patch(
             charts.extend(simple(surface, &patch, cancel)?);
         }
     }
-    Some((charts, method))
+    let charts = merge(surface, &whole, charts, &mut Work::new(whole.len(), cancel));
+    (!cancel.is_cancelled()).then_some((charts, method))
 }
 
 /// One chart for each planar region of a patch that is sound, and one for each triangle of the others.
@@ -106,7 +109,7 @@ fn simple(surface: &Surface, patch: &Patch, cancel: &CancelToken) -> Option<Vec<
         }
         let (axis, least) = region.cone(surface);
         let seen = (least > 0.999).then(|| along(surface, &region, axis));
-        match seen.filter(|seen| is_sound(surface, seen, &mut Work::new(region.len(), cancel))) {
+        match seen.filter(|seen| is_sound(surface, seen, &Limits::ALONE, &mut Work::new(region.len(), cancel))) {
             Some(chart) => charts.push(chart),
             None => charts.extend(region.triangles.iter().map(|&triangle| alone(surface, triangle))),
         }

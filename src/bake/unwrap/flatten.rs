@@ -11,12 +11,22 @@ use super::unroll::unroll;
 use super::work::Work;
 use glam::{DVec2, DVec3};
 
-/// Mean stretch over the area up to which a layout is taken: 1 where lengths are kept, and the larger of the factor
-/// and its inverse where they are not.
-const MEAN_STRETCH: f64 = 1.2;
+/// Stretch up to which a layout is taken: 1 where lengths are kept, and the larger of the factor and its inverse where
+/// they are not.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    /// Mean over the area.
+    mean: f64,
+    /// The worst triangle that counts.
+    worst: f64,
+}
 
-/// The same for the worst triangle that counts.
-const WORST_STRETCH: f64 = 1.7;
+impl Limits {
+    /// Of a patch that would be parted otherwise.
+    pub(super) const ALONE: Self = Self { mean: 1.2, worst: 1.7 };
+    /// Of two charts put together, which are sound without each other.
+    pub(super) const MERGED: Self = Self { mean: 1.1, worst: 1.5 };
+}
 
 /// Share of the area that may be stretched more: slivers, and the tip of a cone.
 const BAD_SHARE: f64 = 1e-3;
@@ -31,19 +41,19 @@ const OPEN: f64 = 0.2;
 const MOST_RELAXED: usize = 100_000;
 
 /// Lays a patch out; `None` if it must be parted.
-pub(super) fn flatten(surface: &Surface, patch: &Patch, work: &mut Work<'_>) -> Option<Chart> {
+pub(super) fn flatten(surface: &Surface, patch: &Patch, limits: &Limits, work: &mut Work<'_>) -> Option<Chart> {
     if !work.takes(2 * patch.len() as u64) {
         return None;
     }
     let (axis, least) = patch.cone(surface);
     if least > FLAT {
         let seen = along(surface, patch, axis);
-        if is_sound(surface, &seen, work) {
+        if is_sound(surface, &seen, limits, work) {
             return Some(seen);
         }
     }
     if let Some(unrolled) = unroll(surface, patch, work)
-        && is_sound(surface, &unrolled, work)
+        && is_sound(surface, &unrolled, limits, work)
     {
         return Some(unrolled);
     }
@@ -51,7 +61,7 @@ pub(super) fn flatten(surface: &Surface, patch: &Patch, work: &mut Work<'_>) -> 
         return None;
     }
     let relaxed = relax(surface, along(surface, patch, axis), work)?;
-    is_sound(surface, &relaxed, work).then_some(relaxed)
+    is_sound(surface, &relaxed, limits, work).then_some(relaxed)
 }
 
 /// A triangle by itself, lengths kept.
@@ -98,7 +108,7 @@ fn double_area([a, b, c]: [DVec2; 3]) -> f64 {
 }
 
 /// Whether nothing is turned over, stretched much, or over each other.
-pub(super) fn is_sound(surface: &Surface, chart: &Chart, work: &mut Work<'_>) -> bool {
+pub(super) fn is_sound(surface: &Surface, chart: &Chart, limits: &Limits, work: &mut Work<'_>) -> bool {
     let (mut sum, mut bad, mut area) = (0.0, 0.0, 0.0);
     for (&triangle, flat) in chart.triangles.iter().zip(chart.flat()) {
         let stretch = stretch(isometric(surface.triangle(triangle)), flat);
@@ -110,9 +120,9 @@ pub(super) fn is_sound(surface: &Surface, chart: &Chart, work: &mut Work<'_>) ->
         }
         area += weight;
         sum += weight * stretch.min(10.0);
-        bad += if stretch > WORST_STRETCH { weight } else { 0.0 };
+        bad += if stretch > limits.worst { weight } else { 0.0 };
     }
-    if sum > MEAN_STRETCH * area || bad > BAD_SHARE * area {
+    if sum > limits.mean * area || bad > BAD_SHARE * area {
         return false;
     }
     work.takes(4 * chart.triangles.len() as u64) && !folds(chart)

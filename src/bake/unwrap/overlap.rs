@@ -191,7 +191,7 @@ mod tests {
         let triangles: Vec<[DVec2; 3]> = (0..300)
             .map(|key| {
                 let at = DVec2::new(unit(10 * key), unit(10 * key + 1));
-                let size = if key % 50 == 0 { 0.5 } else { 0.03 };
+                let size = if key % 50 == 0 { 0.4 } else { 0.03 };
                 [2, 4, 6].map(|next| at + size * DVec2::new(unit(10 * key + next), unit(10 * key + next + 1)))
             })
             .collect();
@@ -203,7 +203,7 @@ mod tests {
                 }
             }
         }
-        assert!(plain.len() > 100 && plain.len() < ENOUGH_PAIRS);
+        assert!(plain.len() > 50 && plain.len() < ENOUGH_PAIRS, "{}", plain.len());
         let found = Overlaps::find(&triangles, 1e-9);
         assert_eq!(found.pairs, plain);
         assert!(!found.is_cut);

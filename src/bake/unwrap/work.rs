@@ -23,6 +23,11 @@ impl<'a> Work<'a> {
         self.left > 0 && !self.cancel.is_cancelled()
     }
 
+    /// Whether some is left.
+    pub(super) fn is_left(&self) -> bool {
+        self.left > 0
+    }
+
     /// Whether a person stopped it.
     pub(super) fn is_cancelled(&self) -> bool {
         self.cancel.is_cancelled()
