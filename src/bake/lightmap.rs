@@ -1,11 +1,13 @@
 //! A lightmap: pages of texels and where each object lies on them, and how they are made.
 
-use super::atlas::{Atlas, Chart};
+use super::atlas::Atlas;
 use super::balance::energy_balance;
 use super::endless::refuse_endless_texels;
 use super::gather::Estimate;
+use super::layout::placements;
 use super::repair::{Field, TexelState, repair};
 use super::sites::{Covered, Site, Sites};
+use super::unwrap::{LaidOut, LaidOutMesh};
 use super::workers::Workers;
 use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, ProgressSink, Stage};
 use crate::artefact::StableId;
@@ -21,6 +23,8 @@ pub struct Lightmap {
     pub pages: Vec<Page>,
     /// Where each object lies, ordered by id.
     pub placements: Vec<Placement>,
+    /// Meshes that were given a UV1.
+    pub meshes: Vec<LaidOutMesh>,
     /// Ids of the lights whose direct light is in the texels.
     pub baked_lights: Vec<StableId>,
     /// What the bake did.
@@ -60,6 +64,9 @@ pub struct Placement {
     pub uv_min: [f32; 2],
     /// Largest corner.
     pub uv_max: [f32; 2],
+    /// Index into [`Lightmap::meshes`] of the mesh that takes the place of the object's own; `None` where that keeps its
+    /// UV1.
+    pub mesh: Option<usize>,
 }
 
 /// Bakes a lightmap of a scene.
@@ -77,9 +84,12 @@ pub fn bake_lightmap(
     settings.validate()?;
     let workers = Workers::new(settings.threads, progress, cancel)?;
     workers.announce(Stage::Prepare)?;
+    let laid_out = LaidOut::new(scene, settings, &workers)?;
+    let scene: &Scene = &laid_out.scene;
     let Compiled { tracer, faults, census } = Compiled::new(scene, &settings.transport);
+    let faults = laid_out.without_solved(faults);
     refuse_what_cannot_be_baked(&tracer, &faults)?;
-    let atlas = Atlas::new(scene, &tracer, settings)?;
+    let atlas = Atlas::new(&laid_out, &tracer, settings);
     let Sites { seen: sites, hidden, warnings: of_uv1 } = Sites::new(scene, &tracer, &atlas, settings, &workers)?;
     refuse_endless_texels(scene, &tracer, &settings.transport, &sites)?;
     let work = workers.gather(
@@ -93,17 +103,22 @@ pub fn bake_lightmap(
     repair(&mut fields, settings, &workers)?;
     let pages = pages(fields, &sites, &work.results);
     let of_transport = BakeWarning::of_transport(&settings.transport, &census);
-    let warnings = faults.into_iter().map(BakeWarning::from).chain(of_uv1).chain(of_transport);
+    let of_layout = laid_out.warnings.iter().chain(&atlas.warnings).cloned();
+    let warnings = faults.into_iter().map(BakeWarning::from).chain(of_layout).chain(of_uv1).chain(of_transport);
     let report = BakeReport {
         energy_balance: balance,
         hidden: hidden.len() as u64,
+        pages: atlas.pages.len() as u32,
+        fill: atlas.fill(sites.len()),
+        unwrapped: laid_out.mesh_of.len() as u64,
         ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings)
     };
     let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));
     let baked_lights = scene.lights.iter().filter(is_baked).map(|light| light.id().clone());
     let mut baked_lights: Vec<StableId> = baked_lights.collect();
     baked_lights.sort();
-    Ok(Lightmap { placements: placements(scene, &atlas), pages, baked_lights, report })
+    let placements = placements(&laid_out, &atlas);
+    Ok(Lightmap { placements, pages, meshes: laid_out.meshes, baked_lights, report })
 }
 
 /// The pages as measured.
@@ -141,20 +156,6 @@ fn pages(fields: Vec<Field>, sites: &[Site], estimates: &[Estimate]) -> Vec<Page
         page.raw[covered.index as usize] = estimate.mean.as_vec3();
     }
     pages
-}
-
-fn placements(scene: &Scene, atlas: &Atlas<'_>) -> Vec<Placement> {
-    let place = |chart: &Chart<'_>| {
-        let page = atlas.pages[chart.page as usize];
-        let uv = |texel: [u32; 2]| [0, 1].map(|axis| (f64::from(texel[axis]) / f64::from(page[axis])) as f32);
-        Placement {
-            id: scene.instances[chart.receiver.instance].id.clone(),
-            page: chart.page,
-            uv_min: uv(chart.origin),
-            uv_max: uv([0, 1].map(|axis| chart.origin[axis] + chart.size[axis])),
-        }
-    };
-    atlas.charts.iter().map(place).collect()
 }
 
 /// Refuses a scene in which a bake would have nothing to do.

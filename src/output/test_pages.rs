@@ -47,9 +47,11 @@ pub(super) fn lightmap(pages: Vec<Page>) -> Lightmap {
             page,
             uv_min: [0.0, 0.25],
             uv_max: [0.5, 1.0],
+            mesh: None,
         })
         .collect();
-    Lightmap { pages, placements, baked_lights: vec![StableId::new("lamp")], report: BakeReport::default() }
+    let baked_lights = vec![StableId::new("lamp")];
+    Lightmap { pages, placements, meshes: Vec::new(), baked_lights, report: BakeReport::default() }
 }
 
 /// The names of what lies in a folder, sorted.
