@@ -5,7 +5,7 @@ mod common;
 
 use bevy_kiln::bake::{BakeSettings, CancelToken, Lightmap, bake_lightmap};
 use bevy_kiln::scene::{Material, Scene};
-use common::display::{Lookup, shown};
+use common::display::{Lookup, displayed_triangles, shown};
 use common::scenes::{SceneBuilder, grey};
 use glam::{Quat, Vec2, Vec3};
 
@@ -18,30 +18,17 @@ const LEAK: f64 = 1e-4;
 /// Half the inner size of each box [m].
 const HALF: Vec3 = Vec3::new(0.6, 0.5, 0.45);
 
-/// Adds a cuboid, each side with a chart of its own, turned about the vertical axis through the origin.
-fn cuboid(
-    mut builder: SceneBuilder,
-    name: &str,
-    low: Vec3,
-    high: Vec3,
-    turn: Quat,
-    material: &Material,
-) -> SceneBuilder {
-    let size = high - low;
-    let [x, y, z] = [Vec3::X * size, Vec3::Y * size, Vec3::Z * size];
-    let sides = [
-        ("-x", low, [z, y]),
-        ("+x", low + x, [y, z]),
-        ("-y", low, [x, z]),
-        ("+y", low + y, [z, x]),
-        ("-z", low, [y, x]),
-        ("+z", low + z, [x, y]),
-    ];
-    for (side, corner, edges) in sides {
-        let edges = edges.map(|edge| turn * edge);
-        builder = builder.quad(&format!("{name} {side}"), turn * corner, edges, material.clone());
-    }
-    builder
+/// Adds a cuboid of one mesh without a UV1, turned about the vertical axis through the origin.
+fn cuboid(builder: SceneBuilder, name: &str, low: Vec3, high: Vec3, turn: Quat, material: &Material) -> SceneBuilder {
+    let corner = |index: u32| {
+        let picked = |axis: u32| (index >> axis & 1) as f32;
+        turn * (low + (high - low) * Vec3::new(picked(0), picked(1), picked(2)))
+    };
+    // Four corners a side, counter-clockwise from outside.
+    let sides = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let positions: Vec<Vec3> = sides.iter().flatten().map(|&index| corner(index)).collect();
+    let indices = (0..6).flat_map(|side| [0, 1, 2, 0, 2, 3].map(|vertex| 4 * side + vertex)).collect();
+    builder.receiver(name, positions, indices, material.clone())
 }
 
 /// How the walls of a box are put together.
@@ -98,14 +85,10 @@ fn bake_with(scene: &Scene, density: f32, samples_per_texel: u32) -> Lightmap {
 fn brightest_inside(scene: &Scene, lightmap: &Lightmap, turn: Quat) -> (f64, usize) {
     let mut brightest = 0.0_f64;
     let mut looked = 0;
-    let page_of = |id| lightmap.placements.iter().find(|placement| placement.id == id);
-    for instance in &scene.instances {
-        let Some(placement) = page_of(instance.id.clone()) else { continue };
-        let mesh = &scene.meshes[instance.mesh];
-        let uv1 = mesh.uv1.as_ref().unwrap();
-        for triangle in mesh.triangles() {
-            let [a, b, c] = triangle.map(|vertex| turn.inverse() * mesh.positions[vertex as usize]);
-            let [p, q, r] = triangle.map(|vertex| uv1[vertex as usize]);
+    for placement in &lightmap.placements {
+        for corners in displayed_triangles(scene, lightmap, placement) {
+            let [a, b, c] = corners.map(|(position, _)| turn.inverse() * position);
+            let [p, q, r] = corners.map(|(_, uv)| uv);
             let normal = (b - a).cross(c - a).normalize();
             for row in 0..=160 {
                 for column in 0..=160 - row {

@@ -1,7 +1,8 @@
 //! A lightmap as a GPU shows it: an independent port of Bevy's lookups (bevy_pbr 0.19, `lightmap.wgsl`), in f64.
 
 use bevy_kiln::bake::{Lightmap, Page, Placement};
-use glam::{DVec2, DVec3, Vec2};
+use bevy_kiln::scene::Scene;
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
 /// How a texture is read between its texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +21,26 @@ pub fn shown(lightmap: &Lightmap, placement: &Placement, uv1: Vec2, lookup: Look
     match lookup {
         Lookup::Bilinear => bilinear(page, texels),
         Lookup::Bicubic => bicubic(page, texels),
+    }
+}
+
+/// The triangles of an object as it is displayed: their corners in the mesh's frame [m] and in UV1.
+pub fn displayed_triangles(scene: &Scene, lightmap: &Lightmap, placement: &Placement) -> Vec<[(Vec3, Vec2); 3]> {
+    let instance = scene.instances.iter().find(|instance| instance.id == placement.id).expect("placed objects exist");
+    let mesh = &scene.meshes[instance.mesh];
+    match placement.mesh.map(|mesh| &lightmap.meshes[mesh]) {
+        None => {
+            let uv1 = mesh.uv1.as_ref().expect("a mesh that keeps its UV1 has one");
+            let corner = |vertex: u32| (mesh.positions[vertex as usize], uv1[vertex as usize]);
+            mesh.triangles().map(|triangle| triangle.map(corner)).collect()
+        }
+        Some(laid_out) => {
+            let corner = |vertex: u32| {
+                let source = laid_out.vertices[vertex as usize];
+                (mesh.positions[source as usize], laid_out.uv1[vertex as usize])
+            };
+            laid_out.indices.chunks_exact(3).map(|triangle| [0, 1, 2].map(|index| corner(triangle[index]))).collect()
+        }
     }
 }
 
