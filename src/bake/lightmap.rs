@@ -89,13 +89,14 @@ pub fn bake_lightmap(
     let balance = energy_balance(&tracer, &sites, &work.results, &settings.transport, &workers)?;
     workers.announce(Stage::Repair)?;
     let mut fields = fields(&atlas, &sites, &work.results, &hidden);
-    repair(&mut fields, settings, &workers)?;
+    let denoised = repair(&mut fields, settings, &workers)?;
     let pages = pages(fields, &sites, &work.results);
     let of_transport = BakeWarning::of_transport(&settings.transport, &census);
     let warnings = faults.into_iter().map(BakeWarning::from).chain(of_uv1).chain(of_transport);
     let report = BakeReport {
         energy_balance: balance,
         hidden: hidden.len() as u64,
+        denoised,
         ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings)
     };
     let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));

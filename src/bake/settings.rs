@@ -20,6 +20,17 @@ pub enum Layout {
     },
 }
 
+/// Whether noise is taken out of texels, and by what.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Denoise {
+    /// Texels stay as measured.
+    Off,
+    /// The built-in denoiser: blurs only what error bars allow.
+    #[default]
+    BuiltIn,
+}
+
 /// What a lightmap bake is asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BakeSettings {
@@ -31,6 +42,8 @@ pub struct BakeSettings {
     pub density: f32,
     /// Where the texels go.
     pub layout: Layout,
+    /// Whether noise is taken out.
+    pub denoise: Denoise,
     /// Threads that trace; `None` for all cores.
     pub threads: Option<NonZeroUsize>,
 }
@@ -42,6 +55,7 @@ impl Default for BakeSettings {
             samples_per_texel: 256,
             density: 16.0,
             layout: Layout::default(),
+            denoise: Denoise::default(),
             threads: None,
         }
     }
