@@ -7,7 +7,7 @@ mod hall;
 #[path = "../tests/common/glb.rs"]
 mod glb;
 
-use bevy_kiln::bake::{BakeSettings, CancelToken, Layout, Lightmap, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Denoise, Layout, Lightmap, bake_lightmap};
 use bevy_kiln::scene::Scene;
 use bevy_kiln::trace::{Estimator, Transport};
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
@@ -32,6 +32,7 @@ fn settings(estimator: Estimator, layout: Layout, samples_per_texel: u32) -> Bak
         samples_per_texel,
         density: 1.5,
         layout,
+        denoise: Denoise::Off,
         threads: NonZeroUsize::new(1),
     }
 }

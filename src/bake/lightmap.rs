@@ -100,7 +100,7 @@ pub fn bake_lightmap(
     let balance = energy_balance(&tracer, &sites, &work.results, &settings.transport, &workers)?;
     workers.announce(Stage::Repair)?;
     let mut fields = fields(&atlas, &sites, &work.results, &hidden);
-    repair(&mut fields, settings, &workers)?;
+    let denoised = repair(&mut fields, settings, &workers)?;
     let pages = pages(fields, &sites, &work.results);
     let of_transport = BakeWarning::of_transport(&settings.transport, &census);
     let of_layout = laid_out.warnings.iter().chain(&atlas.warnings).cloned();
@@ -111,6 +111,7 @@ pub fn bake_lightmap(
         pages: atlas.pages.len() as u32,
         fill: atlas.fill(sites.len()),
         unwrapped: laid_out.mesh_of.len() as u64,
+        denoised,
         ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings)
     };
     let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));

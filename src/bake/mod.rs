@@ -8,7 +8,7 @@
 //! 3. `raster` finds the texels that each triangle covers, however little of them, and `sites` lists them;
 //! 4. `gather` traces paths from the covered part of each texel, in parallel, in independently scrambled replicates
 //!    whose spread is the texel's standard error;
-//! 5. `dilate` fills the texels beside the charts that texture filtering also reads.
+//! 5. `repair` takes out the noise and fills the texels beside the charts that texture filtering also reads.
 //!
 //! Every number is a function of the scene, the settings and the seed: threads and order cannot matter.
 
@@ -43,6 +43,6 @@ pub use picture::{Picture, PictureSettings, render_picture};
 pub use plan::{BakePlan, PlannedEffect, Prediction};
 pub use progress::{CancelToken, Progress, ProgressSink, Stage};
 pub use repair::TexelState;
-pub use report::{BakeReport, RelativeError};
-pub use settings::{BakeSettings, Layout};
+pub use report::{BakeReport, Denoised, RelativeError};
+pub use settings::{BakeSettings, Denoise, Layout};
 pub use unwrap::{LaidOutMesh, UnwrapMethod, Uv1Fault};

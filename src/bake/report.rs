@@ -23,6 +23,8 @@ pub struct BakeReport {
     pub wall_seconds: f64,
     /// Standard error over value, by luminance.
     pub relative_stderr: RelativeError,
+    /// What the denoiser did; `None` where it was off.
+    pub denoised: Option<Denoised>,
     /// Absorbed over emitted flux; `None` for a scene from which light escapes, whose sky shines, or whose surfaces
     /// are not all diffuse.
     pub energy_balance: Option<f64>,
@@ -53,6 +55,15 @@ pub struct RelativeError {
     pub max: f64,
 }
 
+/// Standard error over value before and after denoising, as estimated from the texels themselves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Denoised {
+    /// Of what was measured.
+    pub before: RelativeError,
+    /// Of what is shown: the noise that is left, and what was blurred.
+    pub after: RelativeError,
+}
+
 impl BakeReport {
     /// The report of estimates that took `wall` time.
     pub(super) fn of(
@@ -69,6 +80,7 @@ impl BakeReport {
             cpu_seconds: work.cpu.as_secs_f64(),
             wall_seconds: wall.as_secs_f64(),
             relative_stderr: relative_error(&work.results),
+            denoised: None,
             energy_balance: None,
             clamped_light: clamped_share(&work.results, transport.clamp),
             forced: transport.effects,

@@ -24,6 +24,17 @@ pub enum Layout {
     },
 }
 
+/// Whether noise is taken out of texels, and by what.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Denoise {
+    /// Texels stay as measured.
+    Off,
+    /// The built-in denoiser: blurs only what error bars allow.
+    #[default]
+    BuiltIn,
+}
+
 /// What a lightmap bake is asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BakeSettings {
@@ -38,6 +49,8 @@ pub struct BakeSettings {
     /// Largest width and height of a page, 64 to 4096 [texels]; for [`Layout::Packed`]. An object that needs a larger
     /// one gets fewer texels per metre, and a warning.
     pub max_page_size: u32,
+    /// Whether noise is taken out.
+    pub denoise: Denoise,
     /// Threads that trace; `None` for all cores.
     pub threads: Option<NonZeroUsize>,
 }
@@ -50,6 +63,7 @@ impl Default for BakeSettings {
             density: 16.0,
             layout: Layout::default(),
             max_page_size: *PAGE_SIZES.end(),
+            denoise: Denoise::default(),
             threads: None,
         }
     }

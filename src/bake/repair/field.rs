@@ -27,6 +27,8 @@ pub(in crate::bake) struct Field {
     pub(in crate::bake) value: Vec<Vec3>,
     /// Standard error of what was measured [cd/m²].
     pub(in crate::bake) stderr: Vec<Vec3>,
+    /// Standard error of `value` after denoising, as estimated [cd/m²].
+    pub(in crate::bake) residual: Vec<Vec3>,
     /// What half of the runs measured: `2 value - half` is the other half's before repair, and the two are independent
     /// [cd/m²].
     pub(in crate::bake) half: Vec<Vec3>,
@@ -52,6 +54,7 @@ impl Field {
             size,
             value: vec![Vec3::ZERO; count],
             stderr: vec![Vec3::ZERO; count],
+            residual: vec![Vec3::ZERO; count],
             half: vec![Vec3::ZERO; count],
             state: vec![TexelState::Empty; count],
             chart: vec![0; count],
@@ -67,6 +70,7 @@ impl Field {
         let index = site.covered.index as usize;
         self.value[index] = estimate.mean.as_vec3();
         self.stderr[index] = estimate.stderr.as_vec3();
+        self.residual[index] = self.stderr[index];
         self.half[index] = estimate.half.as_vec3();
         self.state[index] = TexelState::Measured;
         self.chart[index] = site.covered.chart;

@@ -1,0 +1,144 @@
+//! Takes the noise out of measured texels, and leaves what their error bars do not allow to be noise.
+//!
+//! About each texel a paraboloid is fitted to the texels that look like it: those whose surroundings differ by no more
+//! than noise (non-local means, Buades et al. 2005, with the variance taken out as in Rousselle et al. 2012). Which
+//! those are is read from one half of the runs, and what is fitted is the other half (Rousselle et al. 2013; Bitterli
+//! et al. 2016), so that no weight knows the noise that it weighs; the mean of both ways is the outcome. Light on a
+//! surface is smooth almost everywhere, which the paraboloid keeps, right up to a chart's border; at the edge of a
+//! shadow the texels beyond are not like those before it.
+//!
+//! What it promises: a window is walked over links, so that nothing comes from another chart, from behind a wall, or
+//! from a texel that is not measured. A channel without error keeps its bits. No texel moves by more than
+//! [`REACH`] of its standard errors, nor out of the range of the texels that it is made of, so that none gets negative.
+//!
+//! Owns the method; changes values and residuals of measured texels and nothing else.
+
+mod fit;
+mod likeness;
+mod texels;
+mod window;
+
+#[cfg(test)]
+mod tests;
+
+use super::Field;
+use crate::bake::gather::{Estimate, relative_error};
+use crate::bake::report::Denoised;
+use crate::bake::workers::Workers;
+use crate::bake::{BakeError, CancelToken};
+use fit::{Place, Sums};
+use glam::Vec3;
+use texels::Texels;
+use window::{Reached, Window};
+
+/// How far a texel looks for others like it [texels].
+const RADIUS: f32 = 6.0;
+
+/// How far a texel may be moved, in standard errors.
+const REACH: f32 = 4.0;
+
+/// How far squared biases are averaged [texels].
+const BIAS_RADIUS: f32 = 3.0;
+
+/// Takes the noise out of the pages; says how much there was and how much is left.
+pub(super) fn denoise(fields: &mut [Field], workers: &Workers<'_>) -> Result<Denoised, BakeError> {
+    let before = relative_error(&estimates(fields, |field| &field.stderr));
+    for field in fields.iter_mut() {
+        denoise_page(field, workers)?;
+    }
+    Ok(Denoised { before, after: relative_error(&estimates(fields, |field| &field.residual)) })
+}
+
+/// Measured texels with one of their layers of errors.
+fn estimates(fields: &[Field], error: impl Fn(&Field) -> &Vec<Vec3>) -> Vec<Estimate> {
+    let of_field = |field: &Field| {
+        let measured = (0..field.value.len()).filter(|&index| field.is_measured(index));
+        let estimate = |index: usize| Estimate {
+            mean: field.value[index].as_dvec3(),
+            stderr: error(field)[index].as_dvec3(),
+            ..Estimate::default()
+        };
+        measured.map(estimate).collect::<Vec<_>>()
+    };
+    fields.iter().flat_map(of_field).collect()
+}
+
+/// A texel with half of the runs, as the other half weighs it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Filtered {
+    value: Vec3,
+    variance: Vec3,
+    /// Least and most of what it is made of.
+    range: [Vec3; 2],
+}
+
+fn denoise_page(field: &mut Field, workers: &Workers<'_>) -> Result<(), BakeError> {
+    let texels = Texels::new(field);
+    let window = Window::new(RADIUS);
+    let filtered = workers.gather_quietly(&texels.measured, |&index, cancel| {
+        live(cancel)?;
+        let reached = window.reach(&texels, index);
+        Some([0, 1].map(|half| filter(&texels, half, index, &reached)))
+    })?;
+    // Both halves are off by the same bias and by independent noise.
+    let mut squared_bias = vec![Vec3::ZERO; field.value.len()];
+    for (&index, [first, second]) in texels.measured.iter().zip(&filtered) {
+        let [a, b] = [&texels.halves[0][index], &texels.halves[1][index]];
+        squared_bias[index] = (first.value - *b) * (second.value - *a);
+    }
+    let near = Window::new(BIAS_RADIUS);
+    let biases = workers.gather_quietly(&texels.measured, |&index, cancel| {
+        live(cancel)?;
+        let reached = near.reach(&texels, index);
+        let sum: Vec3 = reached.iter().map(|other| squared_bias[other.index]).sum();
+        Some((sum / reached.len() as f32).max(Vec3::ZERO))
+    })?;
+    for ((&index, halves), bias) in texels.measured.iter().zip(&filtered).zip(biases) {
+        let [value, residual] = merged(&texels, field, index, halves, bias);
+        field.value[index] = value;
+        field.residual[index] = residual;
+    }
+    Ok(())
+}
+
+fn live(cancel: &CancelToken) -> Option<()> {
+    (!cancel.is_cancelled()).then_some(())
+}
+
+/// What a texel of one half is by the texels that the other half says are like it.
+fn filter(texels: &Texels, half: usize, middle: usize, reached: &[Reached]) -> Filtered {
+    let measured = &texels.halves[1 - half];
+    let own = measured[middle];
+    let mut range = [own, own];
+    let mut sums = Sums::default();
+    sums.add(1.0, Place::MIDDLE, own, texels.variance[middle]);
+    for other in &reached[1..] {
+        let near = 1.0 - other.squared_distance() / (RADIUS * RADIUS);
+        let weight = near * likeness::likeness(texels, half, middle, other.index);
+        if weight > 0.0 {
+            let value = measured[other.index];
+            sums.add(weight, Place::new(other.step, RADIUS), value, texels.variance[other.index]);
+            range = [range[0].min(value), range[1].max(value)];
+        }
+    }
+    let (value, variance) = sums.at_middle();
+    Filtered { value, variance, range }
+}
+
+/// The mean of both halves within what is allowed, and its standard error.
+fn merged(texels: &Texels, field: &Field, index: usize, halves: &[Filtered; 2], bias: Vec3) -> [Vec3; 2] {
+    let [first, second] = halves;
+    let measured = field.value[index];
+    // A half has twice the variance of the whole.
+    let reach = REACH * root(0.5 * texels.variance[index]).max(field.stderr[index]);
+    let low = first.range[0].min(second.range[0]).max(measured - reach);
+    let high = first.range[1].max(second.range[1]).min(measured + reach);
+    let value = (0.5 * (first.value + second.value)).max(low.min(measured)).min(high.max(measured));
+    let residual = root(0.25 * (first.variance + second.variance) + bias);
+    let is_exact = field.stderr[index].cmpeq(Vec3::ZERO);
+    [Vec3::select(is_exact, measured, value), Vec3::select(is_exact, Vec3::ZERO, residual)]
+}
+
+fn root(squares: Vec3) -> Vec3 {
+    Vec3::from(squares.to_array().map(f32::sqrt))
+}
