@@ -8,7 +8,7 @@ use super::gather::{Estimate, Paths};
 use super::sites::{Site, sites};
 use super::workers::Workers;
 use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, ProgressSink, Stage};
-use crate::artefact::StableId;
+use crate::artefact::{MeshHash, MeshLayout, StableId};
 use crate::scene::{Fault, Light, Scene};
 use crate::trace::{Compiled, Dimensions, Sampler, Tracer, effect_of};
 use glam::{Vec2, Vec3};
@@ -21,6 +21,8 @@ pub struct Lightmap {
     pub pages: Vec<Page>,
     /// Where each object lies, ordered by id.
     pub placements: Vec<Placement>,
+    /// Meshes that the bake gave lightmap coordinates.
+    pub meshes: Vec<LaidOutMesh>,
     /// Ids of the lights whose direct light is in the texels.
     pub baked_lights: Vec<StableId>,
     /// What the bake did.
@@ -55,6 +57,36 @@ pub struct Placement {
     pub uv_min: [f32; 2],
     /// Largest corner.
     pub uv_max: [f32; 2],
+    /// Index into [`Lightmap::meshes`]; `None` for an object whose mesh keeps its own UV1.
+    pub mesh: Option<usize>,
+}
+
+/// A mesh with lightmap coordinates that the bake made, as a split copy of the scene's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LaidOutMesh {
+    /// Index of the mesh in the scene.
+    pub source: usize,
+    /// What that mesh is known by.
+    pub hash: MeshHash,
+    /// For each vertex, the vertex of the source that it copies.
+    pub vertices: Vec<u32>,
+    /// For each vertex its lightmap coordinates, in the unit square; v grows downwards.
+    pub uv1: Vec<Vec2>,
+    /// Triangles, three indices each.
+    pub indices: Vec<u32>,
+    /// How many charts there are.
+    pub charts: u32,
+}
+
+impl From<&LaidOutMesh> for MeshLayout {
+    fn from(mesh: &LaidOutMesh) -> Self {
+        Self {
+            hash: mesh.hash,
+            vertices: mesh.vertices.clone(),
+            uv1: mesh.uv1.iter().map(Vec2::to_array).collect(),
+            indices: mesh.indices.clone(),
+        }
+    }
 }
 
 /// Bakes a lightmap of a scene.
@@ -100,7 +132,7 @@ pub fn bake_lightmap(
     let baked_lights = scene.lights.iter().filter(is_baked).map(|light| light.id().clone());
     let mut baked_lights: Vec<StableId> = baked_lights.collect();
     baked_lights.sort();
-    Ok(Lightmap { placements: placements(scene, &atlas), pages, baked_lights, report })
+    Ok(Lightmap { placements: placements(scene, &atlas), meshes: Vec::new(), pages, baked_lights, report })
 }
 
 fn pages(atlas: &Atlas<'_>, sites: &[Site], estimates: &[Estimate]) -> Vec<Page> {
@@ -139,6 +171,7 @@ fn placements(scene: &Scene, atlas: &Atlas<'_>) -> Vec<Placement> {
             page: chart.page,
             uv_min: uv(chart.origin),
             uv_max: uv([0, 1].map(|axis| chart.origin[axis] + chart.size[axis])),
+            mesh: None,
         }
     };
     atlas.charts.iter().map(place).collect()

@@ -31,7 +31,7 @@ mod workers;
 
 pub use error::{BakeError, BakeWarning};
 pub use gather::REPLICATES;
-pub use lightmap::{Lightmap, Page, Placement, bake_lightmap};
+pub use lightmap::{LaidOutMesh, Lightmap, Page, Placement, bake_lightmap};
 pub use meter::{Measurement, MeterPoint, MeterReading, MeterSettings, measure_irradiance};
 pub use picture::{Picture, PictureSettings, render_picture};
 pub use plan::{BakePlan, PlannedEffect, Prediction};

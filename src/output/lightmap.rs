@@ -1,8 +1,11 @@
-//! A baked folder: the display maps, their previews, the measured layers if asked for, and last the manifest.
+//! A baked folder: the display maps, their previews, the measured layers if asked for, the meshes that were laid out
+//! anew, and last the manifest.
 
 use super::safe_write::{Staged, make_folder};
 use super::{OutputError, OutputFormat, TexelFormat, exr, ktx2, png};
-use crate::artefact::{self, BakedLight, MANIFEST_FILE, MANIFEST_VERSION, Manifest};
+use crate::artefact::{
+    self, BakedLight, MANIFEST_FILE, MANIFEST_VERSION, MESHES_FILE, Manifest, MeshLayout, MeshLayoutError,
+};
 use crate::bake::{BakeWarning, Lightmap, Page};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -22,8 +25,8 @@ pub struct WrittenLightmap {
 }
 
 /// Writes a lightmap into the folder `dir`, which is made if it is missing: `lightmap_<page>.ktx2` to display,
-/// `lightmap_<page>.png` to look at, with [`OutputFormat::Exr`] `lightmap_<page>.exr` to measure with, and
-/// `kiln.ron`, which says where each object lies. `scene_name` is the caller's own word for the scene.
+/// `lightmap_<page>.png` to look at, with [`OutputFormat::Exr`] `lightmap_<page>.exr` to measure with,
+/// `meshes.kiln` if the bake laid meshes out anew, and `kiln.ron`, which says where each object lies. `scene_name` is the caller's own word for the scene.
 ///
 /// All files are complete on the disk before the first takes its place, and the manifest takes its place last: what
 /// fails before leaves the folder as it was.
@@ -34,6 +37,7 @@ pub fn write_lightmap(
     format: OutputFormat,
 ) -> Result<WrittenLightmap, OutputError> {
     check(lightmap, dir)?;
+    let meshes = meshes(lightmap, dir)?;
     make_folder(dir)?;
     let texel_format = format.texel_format();
     let mut staged = Vec::new();
@@ -49,6 +53,9 @@ pub fn write_lightmap(
             staged.push(Staged::write(&dir.join(page_file(index, "exr")), |file| exr::write_page(page, file))?);
         }
     }
+    if let Some(meshes) = meshes {
+        staged.push(Staged::write(&dir.join(MESHES_FILE), |file| file.write_all(&meshes))?);
+    }
     let manifest = manifest(lightmap, scene_name).to_ron();
     staged.push(Staged::write(&dir.join(MANIFEST_FILE), |file| file.write_all(manifest.as_bytes()))?);
     let files = staged.into_iter().map(Staged::place).collect::<Result<_, _>>()?;
@@ -57,6 +64,17 @@ pub fn write_lightmap(
 
 fn page_file(index: usize, extension: &str) -> String {
     format!("lightmap_{index}.{extension}")
+}
+
+/// The file of the meshes that were laid out anew, if there are any.
+fn meshes(lightmap: &Lightmap, dir: &Path) -> Result<Option<Vec<u8>>, OutputError> {
+    if lightmap.meshes.is_empty() {
+        return Ok(None);
+    }
+    let layouts: Vec<MeshLayout> = lightmap.meshes.iter().map(MeshLayout::from).collect();
+    let malformed =
+        |reason: MeshLayoutError| OutputError::Malformed { path: dir.join(MESHES_FILE), reason: reason.to_string() };
+    MeshLayout::write_all(&layouts).map(Some).map_err(malformed)
 }
 
 fn warnings(format: TexelFormat, clamped: u64, clamped_in_exr: u64) -> Vec<BakeWarning> {
@@ -78,6 +96,7 @@ fn manifest(lightmap: &Lightmap, scene_name: &str) -> Manifest {
         page: placement.page,
         uv_min: placement.uv_min,
         uv_max: placement.uv_max,
+        mesh: placement.mesh.and_then(|mesh| u32::try_from(mesh).ok()),
     });
     Manifest {
         version: MANIFEST_VERSION,
@@ -86,6 +105,7 @@ fn manifest(lightmap: &Lightmap, scene_name: &str) -> Manifest {
         texel_unit: TEXEL_UNIT.to_owned(),
         pages: lightmap.pages.iter().enumerate().map(page).collect(),
         placements: placements.collect(),
+        meshes: (!lightmap.meshes.is_empty()).then(|| MESHES_FILE.to_owned()),
         baked_lights: lightmap.baked_lights.iter().map(|id| BakedLight { id: id.clone() }).collect(),
     }
 }
@@ -100,20 +120,24 @@ fn check(lightmap: &Lightmap, dir: &Path) -> Result<(), OutputError> {
             return Err(OutputError::Malformed { path: dir.join(page_file(index, "ktx2")), reason });
         }
     }
-    match lightmap.placements.iter().find(|placement| placement.page as usize >= lightmap.pages.len()) {
-        Some(placement) => Err(OutputError::Malformed {
-            path: dir.join(MANIFEST_FILE),
-            reason: format!("\"{}\" lies on page {}, which is not there", placement.id, placement.page),
-        }),
-        None => Ok(()),
+    let malformed = |reason| Err(OutputError::Malformed { path: dir.join(MANIFEST_FILE), reason });
+    for placement in &lightmap.placements {
+        if placement.page as usize >= lightmap.pages.len() {
+            return malformed(format!("\"{}\" lies on page {}, which is not there", placement.id, placement.page));
+        }
+        if let Some(mesh) = placement.mesh.filter(|&mesh| mesh >= lightmap.meshes.len()) {
+            return malformed(format!("\"{}\" has mesh {mesh}, which is not there", placement.id));
+        }
     }
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_pages::{lightmap, names, page, strange_page};
+    use super::super::test_pages::{cut_quad, lightmap, names, page, strange_page};
     use super::*;
-    use crate::artefact::StableId;
+    use crate::artefact::{MeshHash, StableId};
+    use crate::bake::LaidOutMesh;
     use std::fs;
 
     #[test]
@@ -133,11 +157,55 @@ mod tests {
         assert!(manifest.generator.starts_with("bevy_kiln 0."), "{}", manifest.generator);
         assert_eq!(manifest.pages[1], artefact::Page { file: "lightmap_1.ktx2".into(), width: 4, height: 16 });
         assert_eq!(manifest.baked_lights, [BakedLight { id: StableId::new("lamp") }]);
-        let placement =
-            artefact::Placement { id: StableId::new("room/part 1"), page: 1, uv_min: [0.0, 0.25], uv_max: [0.5, 1.0] };
+        let placement = artefact::Placement {
+            id: StableId::new("room/part 1"),
+            page: 1,
+            uv_min: [0.0, 0.25],
+            uv_max: [0.5, 1.0],
+            mesh: None,
+        };
         assert_eq!(manifest.placements[1], placement);
         let map = fs::read(dir.join(&manifest.pages[1].file)).unwrap();
         assert_eq!(map, ktx2::ktx2_bytes(&lightmap.pages[1], TexelFormat::Rgba16f).bytes);
+    }
+
+    #[test]
+    fn meshes_that_were_laid_out_anew_come_with_it() {
+        let folder = temp_dir::TempDir::new().unwrap();
+        let mut lightmap = lightmap(vec![page(8, 4), page(4, 16)]);
+        lightmap.meshes = vec![LaidOutMesh { hash: MeshHash::of([], []), ..cut_quad() }, cut_quad()];
+        lightmap.placements[1].mesh = Some(1);
+        let written = write_lightmap(&lightmap, "a", folder.path(), OutputFormat::Rgb9e5).unwrap();
+        let last: Vec<_> = written.files.iter().rev().take(2).map(|file| file.file_name().unwrap()).collect();
+        assert_eq!(last, [MANIFEST_FILE, MESHES_FILE]);
+        let manifest = Manifest::from_ron(&fs::read_to_string(folder.path().join(MANIFEST_FILE)).unwrap()).unwrap();
+        assert_eq!(manifest.meshes.as_deref(), Some(MESHES_FILE));
+        assert_eq!([manifest.placements[0].mesh, manifest.placements[1].mesh], [None, Some(1)]);
+        let layouts = MeshLayout::read_all(&fs::read(folder.path().join(MESHES_FILE)).unwrap()).unwrap();
+        assert_eq!(layouts.len(), 2);
+        assert_eq!(layouts[1].vertices, [0, 1, 2, 2, 1, 3]);
+        assert_eq!(layouts[1].uv1[4], [1.0, 0.5]);
+        assert_eq!((layouts[1].hash, layouts[1].indices.len()), (cut_quad().hash, 6));
+    }
+
+    #[test]
+    fn meshes_that_contradict_themselves_are_not_written() {
+        let folder = temp_dir::TempDir::new().unwrap();
+        let dir = folder.path().join("baked");
+        let mut missing = lightmap(vec![page(8, 4)]);
+        missing.placements[0].mesh = Some(0);
+        let mut short = missing.clone();
+        short.meshes = vec![cut_quad()];
+        short.meshes[0].uv1.pop();
+        for (lightmap, file, reason) in [
+            (missing, MANIFEST_FILE, "mesh 0, which is not there"),
+            (short, MESHES_FILE, "5 coordinates for 6 vertices"),
+        ] {
+            let error = write_lightmap(&lightmap, "a", &dir, OutputFormat::Rgb9e5).unwrap_err();
+            assert!(matches!(&error, OutputError::Malformed { path, .. } if *path == dir.join(file)), "{error}");
+            assert!(error.to_string().contains(reason), "{error}");
+            assert!(!dir.exists());
+        }
     }
 
     #[test]
