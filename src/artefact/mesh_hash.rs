@@ -16,11 +16,11 @@ impl MeshHash {
         let mut mixer = Mixer::default();
         let mut vertices = 0_u64;
         for position in positions {
-            position.map(|coordinate| mixer.add(coordinate.to_bits()));
+            mixer.add_all(position.map(f32::to_bits));
             vertices += 1;
         }
         for triangle in triangles {
-            triangle.map(|vertex| mixer.add(vertex));
+            mixer.add_all(triangle);
         }
         // Says where the vertices end and the triangles begin.
         Self(mixer.finish(vertices))

@@ -52,7 +52,7 @@ pub enum MeshLayoutError {
     /// It is shorter or longer than it says, or its check sum is wrong.
     #[error("{MESHES_FILE} is cut off or damaged; copy it again or bake the scene again")]
     Damaged,
-    /// A mesh has as many coordinates as vertices no longer.
+    /// A mesh has more or fewer coordinates than vertices.
     #[error("mesh {mesh} of {MESHES_FILE} has {uv1} coordinates for {vertices} vertices; bake the scene again")]
     Unequal {
         /// Its number.
@@ -147,9 +147,9 @@ impl MeshLayout {
     /// What two layouts have in common if they are the same: 64 bits over all that is in them.
     pub fn key(&self) -> u64 {
         let mut mixer = Mixer::default();
-        self.vertices.iter().for_each(|&vertex| mixer.add(vertex));
-        self.uv1.as_flattened().iter().for_each(|coordinate| mixer.add(coordinate.to_bits()));
-        self.indices.iter().for_each(|&index| mixer.add(index));
+        mixer.add_all(self.vertices.iter().copied());
+        mixer.add_all(self.uv1.as_flattened().iter().map(|coordinate| coordinate.to_bits()));
+        mixer.add_all(self.indices.iter().copied());
         mixer.finish(self.hash.bits())
     }
 

@@ -24,6 +24,11 @@ impl Mixer {
         self.words += 1;
     }
 
+    /// Takes many words.
+    pub(super) fn add_all(&mut self, words: impl IntoIterator<Item = u32>) {
+        words.into_iter().for_each(|word| self.add(word));
+    }
+
     /// Takes bytes, four to a word, the least first; the last word is filled up with zeros.
     pub(super) fn add_bytes(&mut self, bytes: &[u8]) {
         for chunk in bytes.chunks(4) {
@@ -59,7 +64,7 @@ mod tests {
             if let Some(word) = words.get_mut(bit / 32) {
                 *word ^= 1 << (bit % 32);
             }
-            words.map(|word| mixer.add(word));
+            mixer.add_all(words);
             mixer.finish(0)
         };
         let unchanged = hash(256);

@@ -1,10 +1,12 @@
 //! A finished bake onto its entities, and off again. Runs in `PreUpdate`, see [`attach`].
 
 use super::events::LightmapFormat;
-use crate::artefact::StableId;
+use crate::artefact::{MeshLayout, StableId};
 use crate::bake::{self, BakeWarning, Placement};
 use crate::output::{TexelFormat, texel_bytes};
-use crate::plugin::display::{MutedLight, attach, attached, detach, lightmap_sampler, mute_light, unmute_light};
+use crate::plugin::display::{
+    MutedLight, SharedLayout, Shown, attach, attached, detach, lightmap_sampler, mute_light, unmute_light,
+};
 use bevy::asset::RenderAssetUsages;
 use bevy::ecs::entity::EntityHashMap;
 use bevy::pbr::Lightmap;
@@ -29,10 +31,10 @@ pub(super) struct Written {
 
 /// What is shown, and what was there before.
 #[derive(Resource, Default)]
-struct Shown {
+struct OnShow {
     pages: Vec<Handle<Image>>,
-    /// The lightmap that an entity had before its first bake.
-    before: EntityHashMap<Option<Lightmap>>,
+    /// What an entity showed before its first bake.
+    before: EntityHashMap<Option<Shown>>,
     /// The lights that were muted for it.
     lights: Vec<Entity>,
     /// `GlobalAmbientLight::affects_lightmapped_meshes` before it was baked.
@@ -41,7 +43,7 @@ struct Shown {
 
 /// Puts a bake on its entities and mutes the lights that it holds.
 pub(super) fn write_back(world: &mut World, finished: &Finished) -> Written {
-    let mut shown = world.remove_resource::<Shown>().unwrap_or_default();
+    let mut shown = world.remove_resource::<OnShow>().unwrap_or_default();
     let mut clamped = 0;
     let images = finished.lightmap.pages.iter().map(|page| image(page, finished.format, &mut clamped));
     let images: Vec<Image> = images.collect();
@@ -59,7 +61,9 @@ pub(super) fn write_back(world: &mut World, finished: &Finished) -> Written {
         shown.pages = images.into_iter().map(|image| assets.add(image)).collect();
     }
     take_off_the_rest(world, &mut shown, &targets);
-    let mut written = put_on(world, &mut shown, &targets);
+    let layouts: Vec<SharedLayout> =
+        finished.lightmap.meshes.iter().map(|mesh| SharedLayout::from(MeshLayout::from(mesh))).collect();
+    let mut written = put_on(world, &mut shown, &targets, &layouts);
     if clamped > 0 {
         let format = texel_format(finished.format);
         let warning = BakeWarning::Clamped { texels: clamped, format: format.name(), limit: format.limit() };
@@ -72,7 +76,7 @@ pub(super) fn write_back(world: &mut World, finished: &Finished) -> Written {
 
 /// Takes everything off again that [`write_back`] has put on.
 pub(super) fn clear(world: &mut World) {
-    let Some(shown) = world.remove_resource::<Shown>() else { return };
+    let Some(shown) = world.remove_resource::<OnShow>() else { return };
     for (entity, before) in shown.before {
         restore(world, entity, before);
     }
@@ -102,7 +106,7 @@ fn image(page: &bake::Page, format: LightmapFormat, clamped: &mut u64) -> Image 
 
 /// Whether the textures of the last bake can take the new texels, which then show without a frame in between:
 /// same sizes and format, and no entity moves to another page.
-fn fits_in_place(world: &World, shown: &Shown, images: &[Image], targets: &[(Entity, &Placement)]) -> bool {
+fn fits_in_place(world: &World, shown: &OnShow, images: &[Image], targets: &[(Entity, &Placement)]) -> bool {
     let Some(assets) = world.get_resource::<Assets<Image>>() else { return false };
     let same_textures = shown.pages.len() == images.len()
         && shown.pages.iter().zip(images).all(|(page, new)| {
@@ -114,7 +118,7 @@ fn fits_in_place(world: &World, shown: &Shown, images: &[Image], targets: &[(Ent
     same_textures
         && targets.iter().all(|&(entity, placement)| {
             let page = &shown.pages[placement.page as usize];
-            attached(world, entity).is_none_or(|lightmap| lightmap.image == *page)
+            attached(world, entity).is_none_or(|before| before.lightmap.image == *page)
         })
 }
 
@@ -128,7 +132,7 @@ fn overwrite(world: &mut World, pages: &[Handle<Image>], images: Vec<Image>) {
 }
 
 /// Gives entities that are no longer in the bake what they had before it.
-fn take_off_the_rest(world: &mut World, shown: &mut Shown, targets: &[(Entity, &Placement)]) {
+fn take_off_the_rest(world: &mut World, shown: &mut OnShow, targets: &[(Entity, &Placement)]) {
     let kept: EntityHashMap<()> = targets.iter().map(|&(entity, _)| (entity, ())).collect();
     let gone: Vec<Entity> = shown.before.keys().copied().filter(|entity| !kept.contains_key(entity)).collect();
     for entity in gone {
@@ -137,7 +141,12 @@ fn take_off_the_rest(world: &mut World, shown: &mut Shown, targets: &[(Entity, &
     }
 }
 
-fn put_on(world: &mut World, shown: &mut Shown, targets: &[(Entity, &Placement)]) -> Written {
+fn put_on(
+    world: &mut World,
+    shown: &mut OnShow,
+    targets: &[(Entity, &Placement)],
+    layouts: &[SharedLayout],
+) -> Written {
     let mut written = Written::default();
     for &(entity, placement) in targets {
         let lightmap = Lightmap {
@@ -145,13 +154,15 @@ fn put_on(world: &mut World, shown: &mut Shown, targets: &[(Entity, &Placement)]
             uv_rect: Rect { min: placement.uv_min.into(), max: placement.uv_max.into() },
             bicubic_sampling: false,
         };
+        let layout = placement.mesh.and_then(|mesh| layouts.get(mesh)).cloned();
         let before = attached(world, entity);
-        let is_there = before.as_ref().is_some_and(|before| before.image == lightmap.image);
+        let is_there =
+            before.as_ref().is_some_and(|before| before.lightmap.image == lightmap.image && before.layout == layout);
         if is_there && world.get::<Lightmap>(entity).is_some() {
             if let Some(mut shown) = world.get_mut::<Lightmap>(entity) {
                 shown.uv_rect = lightmap.uv_rect;
             }
-        } else if let Err(why) = attach(world, entity, lightmap) {
+        } else if let Err(why) = attach(world, entity, Shown { lightmap, layout }) {
             written.warnings.push(format!("\"{}\" {why}, so it does not show its lightmap", placement.id));
             continue;
         }
@@ -161,7 +172,7 @@ fn put_on(world: &mut World, shown: &mut Shown, targets: &[(Entity, &Placement)]
     written
 }
 
-fn mute(world: &mut World, shown: &mut Shown, finished: &Finished) {
+fn mute(world: &mut World, shown: &mut OnShow, finished: &Finished) {
     unmute(world, &std::mem::take(&mut shown.lights));
     let baked = finished.lightmap.baked_lights.iter().filter_map(|id| finished.entities.get(id).copied());
     for light in baked {
@@ -188,7 +199,7 @@ fn unmute(world: &mut World, lights: &[Entity]) {
     }
 }
 
-fn restore(world: &mut World, entity: Entity, before: Option<Lightmap>) {
+fn restore(world: &mut World, entity: Entity, before: Option<Shown>) {
     let Some(before) = before else { return detach(world, entity) };
     // What it had before was on it, so it can only fail where the entity is gone or was remade since.
     let _ = attach(world, entity, before);
