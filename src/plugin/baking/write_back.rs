@@ -210,3 +210,117 @@ fn restore_ambient(world: &mut World, flag: Option<bool>) {
         ambient.affects_lightmapped_meshes = flag;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::artefact::MeshHash;
+    use crate::bake::{BakeReport, LaidOutMesh, Page};
+    use bevy::mesh::PrimitiveTopology;
+
+    const TRIANGLE: [[f32; 3]; 3] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+
+    /// A world with one triangle without UV1.
+    fn world() -> (World, Entity, Handle<Mesh>) {
+        let mut world = World::new();
+        world.insert_resource(Assets::<Image>::default());
+        world.insert_resource(Assets::<Mesh>::default());
+        world.insert_resource(Assets::<StandardMaterial>::default());
+        let mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, TRIANGLE.to_vec());
+        let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+        let material = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial::default());
+        let entity = world.spawn((Mesh3d(mesh.clone()), MeshMaterial3d(material))).id();
+        (world, entity, mesh)
+    }
+
+    /// A bake of it whose UV1 starts at `uv`.
+    fn bake_of(positions: [[f32; 3]; 3], uv: f32, radiance: f32) -> bake::Lightmap {
+        let page = Page {
+            width: 4,
+            height: 4,
+            radiance: vec![Vec3::splat(radiance); 16],
+            coverage: vec![1.0; 16],
+            raw: vec![Vec3::splat(radiance); 16],
+            stderr: vec![Vec3::ZERO; 16],
+        };
+        let mesh = LaidOutMesh {
+            source: 0,
+            hash: MeshHash::of(positions, [[0, 1, 2]]),
+            vertices: vec![0, 1, 2],
+            uv1: vec![Vec2::splat(uv), Vec2::X, Vec2::Y],
+            indices: vec![0, 1, 2],
+            charts: 1,
+        };
+        let placement =
+            Placement { id: StableId::new("a"), page: 0, uv_min: [0.0; 2], uv_max: [1.0; 2], mesh: Some(0) };
+        bake::Lightmap {
+            pages: vec![page],
+            placements: vec![placement],
+            meshes: vec![mesh],
+            baked_lights: Vec::new(),
+            report: BakeReport::default(),
+        }
+    }
+
+    fn show(world: &mut World, entity: Entity, lightmap: &bake::Lightmap) -> Written {
+        let entities = BTreeMap::from([(StableId::new("a"), entity)]);
+        let format = LightmapFormat::Rgba16f;
+        write_back(world, &Finished { lightmap, entities: &entities, ambient_baked: false, format })
+    }
+
+    #[test]
+    fn a_mesh_without_uv1_wears_its_layout_until_it_is_cleared() {
+        let (mut world, entity, own) = world();
+        let mesh_of = |world: &World| world.get::<Mesh3d>(entity).unwrap().0.clone();
+        let written = show(&mut world, entity, &bake_of(TRIANGLE, 0.0, 1.0));
+        assert_eq!((written.entities, written.warnings), (1, vec![]));
+        let first = mesh_of(&world);
+        assert!(first != own && world.get::<Lightmap>(entity).is_some());
+        assert!(world.resource::<Assets<Mesh>>().get(&first).unwrap().contains_attribute(Mesh::ATTRIBUTE_UV_1));
+
+        // The same layout: the texels change in place and nothing else does.
+        show(&mut world, entity, &bake_of(TRIANGLE, 0.0, 2.0));
+        assert_eq!(mesh_of(&world), first);
+        assert!(world.get::<Lightmap>(entity).is_some());
+
+        // Another layout: another mesh of the same own one, and a few frames without a lightmap.
+        show(&mut world, entity, &bake_of(TRIANGLE, 0.5, 2.0));
+        let second = mesh_of(&world);
+        assert!(second != own && second != first && world.get::<Lightmap>(entity).is_none());
+
+        clear(&mut world);
+        assert_eq!(mesh_of(&world), own);
+        assert!(attached(&world, entity).is_none());
+        assert_eq!(world.resource::<Assets<Mesh>>().get(&own).unwrap().attributes().count(), 1);
+    }
+
+    #[test]
+    fn a_mesh_that_changed_while_it_was_baked_is_left_alone() {
+        let (mut world, entity, own) = world();
+        let written = show(&mut world, entity, &bake_of([[0.5; 3]; 3], 0.0, 1.0));
+        assert_eq!(written.entities, 0);
+        let sentence =
+            "\"a\" has another mesh than the one that was baked (bake again), so it does not show its lightmap";
+        assert_eq!(written.warnings, [sentence]);
+        assert_eq!(world.get::<Mesh3d>(entity).unwrap().0, own);
+        assert!(attached(&world, entity).is_none());
+    }
+
+    #[test]
+    fn what_was_shown_before_the_first_bake_comes_back_with_its_mesh() {
+        let (mut world, entity, own) = world();
+        let layout = MeshLayout::from(&bake_of(TRIANGLE, 0.25, 1.0).meshes[0]);
+        let lightmap =
+            Lightmap { image: Handle::default(), uv_rect: Rect::new(0.0, 0.0, 1.0, 1.0), bicubic_sampling: true };
+        attach(&mut world, entity, Shown { lightmap, layout: Some(layout.into()) }).unwrap();
+        let before = world.get::<Mesh3d>(entity).unwrap().0.clone();
+        assert_ne!(before, own);
+        show(&mut world, entity, &bake_of(TRIANGLE, 0.5, 1.0));
+        let baked = world.get::<Mesh3d>(entity).unwrap().0.clone();
+        assert!(baked != own && baked != before);
+        clear(&mut world);
+        assert_eq!(world.get::<Mesh3d>(entity).unwrap().0, before);
+        assert!(attached(&world, entity).is_some_and(|shown| shown.lightmap.bicubic_sampling));
+    }
+}
