@@ -208,7 +208,7 @@ fn a_mesh_that_is_not_loaded_yet_is_waited_for() {
     let mut app = game(folder.path());
     write(&folder.path().join("baked"), apart(&mut app, 0.25));
     let (own, west) = (mesh_of(&mut app, "east"), entity(&mut app, "west"));
-    let mut meshes = app.world_mut().resource_mut::<Assets<Mesh>>();
+    let meshes = app.world_mut().resource_mut::<Assets<Mesh>>();
     let late = meshes.reserve_handle();
     let same = meshes.get(&own).unwrap().clone();
     app.world_mut().entity_mut(west).insert(Mesh3d(late.clone()));
