@@ -1,12 +1,13 @@
 //! A baked folder: the display maps, their previews, the measured layers if asked for, the meshes that were laid out
 //! anew, and last the manifest.
 
+use super::compression::{CompressionError, Losses};
 use super::safe_write::{Staged, make_folder};
-use super::{OutputError, OutputFormat, TexelFormat, exr, ktx2, png};
+use super::{OutputError, OutputFormat, TexelFormat, exr, ktx2, png, texel_bytes};
 use crate::artefact::{
     self, BakedLight, MANIFEST_FILE, MANIFEST_VERSION, MESHES_FILE, Manifest, MeshLayout, MeshLayoutError,
 };
-use crate::bake::{BakeWarning, Lightmap, Page};
+use crate::bake::{BakeWarning, Lightmap, Page, Placement};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -22,6 +23,8 @@ pub struct WrittenLightmap {
     pub warnings: Vec<BakeWarning>,
     /// Texels that the display maps could not hold as they are.
     pub clamped: u64,
+    /// What the display maps lost to compression; `None` for formats without.
+    pub compression: Option<CompressionError>,
 }
 
 /// Writes a lightmap into the folder `dir`, which is made if it is missing: `lightmap_<page>.ktx2` to display,
@@ -43,10 +46,15 @@ pub fn write_lightmap(
     let mut staged = Vec::new();
     let mut clamped = 0;
     let mut clamped_in_exr = 0;
+    let mut losses = Losses::of(&lightmap.pages, texel_format);
     for (index, page) in lightmap.pages.iter().enumerate() {
-        let encoded = ktx2::ktx2_bytes(page, texel_format);
+        let encoded = texel_bytes(page, texel_format);
         clamped += encoded.clamped;
-        staged.push(Staged::write(&dir.join(page_file(index, "ktx2")), |file| file.write_all(&encoded.bytes))?);
+        if let Some(losses) = &mut losses {
+            losses.add(page, &encoded.bytes);
+        }
+        let map = ktx2::file_of(page, texel_format, encoded.bytes);
+        staged.push(Staged::write(&dir.join(page_file(index, "ktx2")), |file| file.write_all(&map))?);
         staged.push(Staged::write(&dir.join(page_file(index, "png")), |file| png::write_preview(page, file))?);
         if matches!(format, OutputFormat::Exr) {
             clamped_in_exr += exr::count_clamped(page);
@@ -56,10 +64,11 @@ pub fn write_lightmap(
     if let Some(meshes) = meshes {
         staged.push(Staged::write(&dir.join(MESHES_FILE), |file| file.write_all(&meshes))?);
     }
-    let manifest = manifest(lightmap, scene_name).to_ron();
+    let manifest = manifest(lightmap, scene_name, texel_format).to_ron();
     staged.push(Staged::write(&dir.join(MANIFEST_FILE), |file| file.write_all(manifest.as_bytes()))?);
     let files = staged.into_iter().map(Staged::place).collect::<Result<_, _>>()?;
-    Ok(WrittenLightmap { files, warnings: warnings(texel_format, clamped, clamped_in_exr), clamped })
+    let compression = losses.map(|losses| losses.error());
+    Ok(WrittenLightmap { files, warnings: warnings(texel_format, clamped, clamped_in_exr), clamped, compression })
 }
 
 fn page_file(index: usize, extension: &str) -> String {
@@ -86,28 +95,40 @@ fn warnings(format: TexelFormat, clamped: u64, clamped_in_exr: u64) -> Vec<BakeW
         .collect()
 }
 
-fn manifest(lightmap: &Lightmap, scene_name: &str) -> Manifest {
+fn manifest(lightmap: &Lightmap, scene_name: &str, format: TexelFormat) -> Manifest {
     let page = |(index, page): (usize, &Page)| {
-        let (width, height) = ktx2::stored_size(page);
+        let (width, height) = ktx2::stored_size(page, format);
         artefact::Page { file: page_file(index, "ktx2"), width, height }
     };
-    let placements = lightmap.placements.iter().map(|placement| artefact::Placement {
-        id: placement.id.clone(),
-        page: placement.page,
-        uv_min: placement.uv_min,
-        uv_max: placement.uv_max,
-        mesh: placement.mesh.and_then(|mesh| u32::try_from(mesh).ok()),
-    });
+    let placement = |placement: &Placement| {
+        let page = &lightmap.pages[placement.page as usize];
+        let within = |uv| within_stored(uv, page, format);
+        artefact::Placement {
+            id: placement.id.clone(),
+            page: placement.page,
+            uv_min: within(placement.uv_min),
+            uv_max: within(placement.uv_max),
+            mesh: placement.mesh.and_then(|mesh| u32::try_from(mesh).ok()),
+        }
+    };
     Manifest {
         version: MANIFEST_VERSION,
         generator: concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION")).to_owned(),
         scene: scene_name.to_owned(),
         texel_unit: TEXEL_UNIT.to_owned(),
         pages: lightmap.pages.iter().enumerate().map(page).collect(),
-        placements: placements.collect(),
+        placements: lightmap.placements.iter().map(placement).collect(),
         meshes: (!lightmap.meshes.is_empty()).then(|| MESHES_FILE.to_owned()),
         baked_lights: lightmap.baked_lights.iter().map(|id| BakedLight { id: id.clone() }).collect(),
     }
+}
+
+/// A place on a page as a place on the texture that stores it, which may be larger.
+fn within_stored(uv: [f32; 2], page: &Page, format: TexelFormat) -> [f32; 2] {
+    let stored = format.stored_size(page);
+    let share = |length: u32, stored: u32| f64::from(length) / f64::from(stored.max(1));
+    let [u, v] = uv.map(f64::from);
+    [(u * share(page.width, stored[0])) as f32, (v * share(page.height, stored[1])) as f32]
 }
 
 /// Refuses what no file could say.
@@ -148,7 +169,10 @@ mod tests {
         let written = write_lightmap(&lightmap, "room.glb", &dir, OutputFormat::Rgba16f).unwrap();
         let expected =
             ["lightmap_0.ktx2", "lightmap_0.png", "lightmap_1.ktx2", "lightmap_1.png", "kiln.ron"].map(|n| dir.join(n));
-        assert_eq!(written, WrittenLightmap { files: expected.to_vec(), warnings: vec![], clamped: 0 });
+        assert_eq!(
+            written,
+            WrittenLightmap { files: expected.to_vec(), warnings: vec![], clamped: 0, compression: None }
+        );
         assert_eq!(names(&dir).len(), 5);
 
         let manifest = Manifest::from_ron(&fs::read_to_string(dir.join(MANIFEST_FILE)).unwrap()).unwrap();
@@ -167,6 +191,20 @@ mod tests {
         assert_eq!(manifest.placements[1], placement);
         let map = fs::read(dir.join(&manifest.pages[1].file)).unwrap();
         assert_eq!(map, ktx2::ktx2_bytes(&lightmap.pages[1], TexelFormat::Rgba16f).bytes);
+    }
+
+    #[test]
+    fn compressed_maps_say_what_they_lost_and_where_objects_lie_on_them() {
+        let folder = temp_dir::TempDir::new().unwrap();
+        let lightmap = lightmap(vec![page(8, 4), page(6, 30)]);
+        let written = write_lightmap(&lightmap, "a", folder.path(), OutputFormat::Bc6h).unwrap();
+        let error = written.compression.unwrap();
+        assert!(error.rms > 0.0 && error.rms < 0.1 && error.worst < 0.3, "{error:?}");
+        let manifest = Manifest::from_ron(&fs::read_to_string(folder.path().join(MANIFEST_FILE)).unwrap()).unwrap();
+        assert_eq!(manifest.pages[1], artefact::Page { file: "lightmap_1.ktx2".into(), width: 8, height: 32 });
+        assert_eq!((manifest.placements[0].uv_min, manifest.placements[0].uv_max), ([0.0, 0.25], [0.5, 1.0]));
+        // The page is 6/8 and 30/32 of its texture.
+        assert_eq!((manifest.placements[1].uv_min, manifest.placements[1].uv_max), ([0.0, 0.234375], [0.375, 0.9375]));
     }
 
     #[test]
