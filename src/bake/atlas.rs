@@ -6,7 +6,7 @@
 //! atlas. `shared`: one page that every object's UV1 already addresses.
 
 use super::settings::Layout;
-use super::{BakeError, BakeSettings, dilate};
+use super::{BakeError, BakeSettings, repair};
 use crate::scene::Scene;
 use crate::trace::{Receiver, Tracer};
 use etagere::{AtlasAllocator, size2};
@@ -17,7 +17,7 @@ use glam::{DVec2, Vec2};
 const MAX_PACKED_SIZE: u32 = 4096;
 
 /// Empty texels around each rectangle, so that two neighbours are filled without mixing.
-const GUTTER: u32 = dilate::PASSES / 2;
+const GUTTER: u32 = repair::PASSES / 2;
 
 /// An object's place on a page.
 #[derive(Clone, Debug)]

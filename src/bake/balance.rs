@@ -41,11 +41,13 @@ pub(super) fn energy_balance(
     let mut measured_area = vec![0.0; tracer.triangle_count()];
     let mut absorbed = DVec3::ZERO;
     for (site, estimate) in sites.iter().zip(estimates) {
-        for &(triangle, area) in &site.texel.areas {
+        let texel = &site.covered.texel;
+        for &(triangle, area) in &texel.areas {
             measured_area[triangle as usize] += area;
         }
-        let area: f64 = site.texel.areas.iter().map(|(_, area)| area).sum();
-        let absorption = (Vec3::ONE - site.texel.albedo(tracer)).as_dvec3();
+        // What is refused lies in the dark, or is measured by another texel.
+        let area: f64 = texel.areas.iter().map(|(_, area)| area * estimate.accepted).sum();
+        let absorption = (Vec3::ONE - texel.albedo(tracer)).as_dvec3();
         absorbed += absorption * estimate.mean * std::f64::consts::PI * area;
     }
     absorbed += unmeasured_absorption(tracer, &measured_area, transport, workers)?;

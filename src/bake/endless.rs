@@ -6,7 +6,6 @@ use super::sites::Site;
 use crate::math::combine;
 use crate::scene::Scene;
 use crate::trace::{MAX_VERTICES, Sobol, Tally, Tracer, Transport};
-use glam::Vec2;
 
 /// Paths from sources, and as many from what receives.
 const PROBES: u64 = 64;
@@ -41,7 +40,7 @@ pub(super) fn refuse_endless_texels(
 ) -> Result<(), BakeError> {
     refuse_endless_paths(scene, tracer, transport, |probe, sobol, tally| {
         if let Some(site) = spread(sites, probe) {
-            tracer.diffuse_radiance(&site.texel.start(tracer, Vec2::splat(0.5)), sobol, transport, tally);
+            tracer.diffuse_radiance(&site.footing.anchor, sobol, transport, tally);
         }
     })
 }

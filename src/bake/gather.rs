@@ -13,6 +13,9 @@ use glam::{DVec3, Vec3};
 /// How many independently scrambled runs share the paths of each estimate; their spread is its standard error.
 pub const REPLICATES: u32 = 16;
 
+/// How many starts may be refused for each one that is wanted, before a path starts wherever it can.
+const PATIENCE: u64 = 8;
+
 /// Paths between two looks at the cancel switch.
 const CANCEL_INTERVAL: u64 = 64;
 
@@ -23,6 +26,7 @@ pub(super) enum KeyKind {
     Point = 2,
     Pixel = 3,
     Balance = 4,
+    Probe = 5,
 }
 
 /// The key of the paths of kind `kind` under `seed` that belong to an object (or nothing: 0) and a place on it.
@@ -41,13 +45,27 @@ pub(super) struct Paths {
     pub(super) clamp: Option<f32>,
 }
 
+/// Where a path may start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Start {
+    /// Where its numbers say, or nowhere.
+    Drawn,
+    /// Where it can: there may be no refusal.
+    Anywhere,
+}
+
 /// A mean and its standard error, per channel.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Estimate {
     pub(super) mean: DVec3,
     pub(super) stderr: DVec3,
+    /// The mean over every second run: the other half's is `2 mean - half`, and the two are independent.
+    pub(super) half: DVec3,
     pub(super) samples: u64,
+    /// Rays traced, but for those that ask whether a path may start somewhere.
     pub(super) rays: u64,
+    /// Share of the starts that were not refused, in (0, 1].
+    pub(super) accepted: f64,
     /// What the clamp took from the mean, as luminance.
     pub(super) clamped: f64,
     /// Paths whose light was no number, or negative. They count as dark.
@@ -63,18 +81,33 @@ impl Estimate {
         cancel: &CancelToken,
         mut path: impl FnMut(&Sobol, &mut Tally) -> Vec3,
     ) -> Option<Self> {
+        Self::gather_accepted(paths, cancel, |sobol, _, tally| Some(path(sobol, tally)))
+    }
+
+    /// The same where a path may be refused, for the mean over those that are not. Once too many have been refused
+    /// `path` is asked for what cannot be ([`Start::Anywhere`]).
+    pub(super) fn gather_accepted(
+        paths: Paths,
+        cancel: &CancelToken,
+        mut path: impl FnMut(&Sobol, Start, &mut Tally) -> Option<Vec3>,
+    ) -> Option<Self> {
         let per_replicate = u64::from(paths.count.div_ceil(REPLICATES));
         let mut tally = Tally::default();
-        let (mut taken, mut not_light) = (0.0, 0);
+        let (mut taken, mut not_light, mut tries) = (0.0, 0, 0);
         let mut means = [DVec3::ZERO; REPLICATES as usize];
         for (replicate, mean) in means.iter_mut().enumerate() {
             let key = combine(paths.key, replicate as u64);
             let mut sum = DVec3::ZERO;
-            for index in 0..per_replicate {
-                if index.is_multiple_of(CANCEL_INTERVAL) && cancel.is_cancelled() {
+            let (mut accepted, mut index) = (0, 0);
+            while accepted < per_replicate {
+                if index % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {
                     return None;
                 }
-                let value = path(&Sobol::new(key, index), &mut tally);
+                let start = if index < PATIENCE * per_replicate { Start::Drawn } else { Start::Anywhere };
+                let value = path(&Sobol::new(key, index), start, &mut tally);
+                index += 1;
+                let Some(value) = value else { continue };
+                accepted += 1;
                 if !is_light(value) {
                     not_light += 1;
                     continue;
@@ -83,6 +116,7 @@ impl Estimate {
                 taken += luminance(value - kept);
                 sum += kept.as_dvec3();
             }
+            tries += index;
             *mean = sum / per_replicate as f64;
         }
         let count = f64::from(REPLICATES);
@@ -90,9 +124,12 @@ impl Estimate {
         let squares: DVec3 = means.iter().map(|&value| (value - mean) * (value - mean)).sum();
         let variance_of_mean = squares / (count * (count - 1.0));
         let stderr = DVec3::from(variance_of_mean.to_array().map(f64::sqrt));
+        let half = means.iter().step_by(2).sum::<DVec3>() / (0.5 * count);
         let samples = per_replicate * u64::from(REPLICATES);
         let Tally { rays, endless, .. } = tally;
-        Some(Self { mean, stderr, samples, rays, clamped: taken / samples as f64, not_light, endless })
+        let clamped = taken / samples as f64;
+        let accepted = samples as f64 / tries as f64;
+        Some(Self { mean, stderr, half, samples, rays, accepted, clamped, not_light, endless })
     }
 
     /// Standard error over value, by luminance; `None` for a black estimate.

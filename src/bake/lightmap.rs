@@ -2,15 +2,15 @@
 
 use super::atlas::{Atlas, Chart};
 use super::balance::energy_balance;
-use super::dilate::dilate;
 use super::endless::refuse_endless_texels;
-use super::gather::{Estimate, Paths};
-use super::sites::{Site, sites};
+use super::gather::Estimate;
+use super::repair::{Field, TexelState, repair};
+use super::sites::{Covered, Site, Sites};
 use super::workers::Workers;
 use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, ProgressSink, Stage};
 use crate::artefact::{MeshHash, MeshLayout, StableId};
 use crate::scene::{Fault, Light, Scene};
-use crate::trace::{Compiled, Dimensions, Sampler, Tracer, effect_of};
+use crate::trace::{Compiled, Tracer, effect_of};
 use glam::{Vec2, Vec3};
 use std::time::Instant;
 
@@ -30,7 +30,7 @@ pub struct Lightmap {
 }
 
 /// One texture. All layers are row by row, row 0 at v = 0, `width × height` long.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Page {
     /// Width [texels].
     pub width: u32,
@@ -38,12 +38,21 @@ pub struct Page {
     pub height: u32,
     /// E/π after all repair, E being the irradiance [cd/m²].
     pub radiance: Vec<Vec3>,
-    /// Share of the texel's area that triangles cover, in [0, 1]; 0 where dilated or empty.
+    /// Share of the texel's area that triangles cover, in [0, 1], but for what was found to be out of sight; 0 where
+    /// dilated, hidden or empty. The texel's value is the mean over that share.
     pub coverage: Vec<f32>,
     /// E/π as measured, before repair [cd/m²].
     pub raw: Vec<Vec3>,
     /// Standard error of `raw` [cd/m²].
     pub stderr: Vec<Vec3>,
+    /// What each texel is.
+    pub state: Vec<TexelState>,
+    /// One more than the number of its chart in the bake; 0 where no triangle covers it.
+    pub chart: Vec<u32>,
+    /// Texels per metre of the surface that was measured; 0 where none was [1/m].
+    pub density: Vec<f32>,
+    /// Whether triangles or charts overlap there.
+    pub is_overlapped: Vec<bool>,
 }
 
 /// Where an object's unit square of UV1 lies on a page.
@@ -107,27 +116,25 @@ pub fn bake_lightmap(
     let Compiled { tracer, faults, census } = Compiled::new(scene, &settings.transport);
     refuse_what_cannot_be_baked(&tracer, &faults)?;
     let atlas = Atlas::new(scene, &tracer, settings)?;
-    let (sites, overlaps) = sites(scene, &tracer, &atlas, settings);
+    let Sites { seen: sites, hidden, warnings: of_uv1 } = Sites::new(scene, &tracer, &atlas, settings, &workers)?;
     refuse_endless_texels(scene, &tracer, &settings.transport, &sites)?;
     let work = workers.gather(
         &sites,
-        |site, cancel| {
-            let paths = Paths { key: site.key, count: settings.samples_per_texel, clamp: settings.transport.clamp };
-            Estimate::gather(paths, cancel, |sobol, tally| {
-                let [u, v, ..] = sobol.draw(Dimensions::Start);
-                let start = site.texel.start(&tracer, Vec2::new(u, v));
-                tracer.diffuse_radiance(&start, sobol, &settings.transport, tally)
-            })
-        },
+        |site, cancel| site.estimate(&tracer, settings.samples_per_texel, &settings.transport, cancel),
         Estimate::relative_stderr,
     )?;
     let balance = energy_balance(&tracer, &sites, &work.results, &settings.transport, &workers)?;
     workers.announce(Stage::Repair)?;
-    let pages = pages(&atlas, &sites, &work.results);
+    let mut fields = fields(&atlas, &sites, &work.results, &hidden);
+    repair(&mut fields, settings, &workers)?;
+    let pages = pages(fields, &sites, &work.results);
     let of_transport = BakeWarning::of_transport(&settings.transport, &census);
-    let warnings = faults.into_iter().map(BakeWarning::from).chain(overlaps).chain(of_transport);
-    let report =
-        BakeReport { energy_balance: balance, ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings) };
+    let warnings = faults.into_iter().map(BakeWarning::from).chain(of_uv1).chain(of_transport);
+    let report = BakeReport {
+        energy_balance: balance,
+        hidden: hidden.len() as u64,
+        ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings)
+    };
     let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));
     let baked_lights = scene.lights.iter().filter(is_baked).map(|light| light.id().clone());
     let mut baked_lights: Vec<StableId> = baked_lights.collect();
@@ -135,29 +142,43 @@ pub fn bake_lightmap(
     Ok(Lightmap { placements: placements(scene, &atlas), meshes: Vec::new(), pages, baked_lights, report })
 }
 
-fn pages(atlas: &Atlas<'_>, sites: &[Site], estimates: &[Estimate]) -> Vec<Page> {
-    let empty = |&[width, height]: &[u32; 2]| {
-        let count = width as usize * height as usize;
+/// The pages as measured.
+fn fields(atlas: &Atlas<'_>, sites: &[Site], estimates: &[Estimate], hidden: &[Covered]) -> Vec<Field> {
+    let mut fields: Vec<Field> = atlas.pages.iter().map(|&size| Field::empty(size)).collect();
+    for (site, estimate) in sites.iter().zip(estimates) {
+        fields[site.covered.page as usize].set_measured(site, estimate);
+    }
+    for covered in hidden {
+        fields[covered.page as usize].set_hidden(covered);
+    }
+    fields
+}
+
+/// The pages as repaired.
+fn pages(fields: Vec<Field>, sites: &[Site], estimates: &[Estimate]) -> Vec<Page> {
+    let page = |field: Field| {
+        let count = field.value.len();
+        let chart = |(state, chart): (&TexelState, u32)| if *state == TexelState::Empty { 0 } else { chart + 1 };
         Page {
-            width,
-            height,
-            radiance: Vec::new(),
+            width: field.size[0],
+            height: field.size[1],
+            radiance: field.value,
             coverage: vec![0.0; count],
             raw: vec![Vec3::ZERO; count],
-            stderr: vec![Vec3::ZERO; count],
+            stderr: field.stderr,
+            density: vec![0.0; count],
+            is_overlapped: vec![false; count],
+            chart: field.state.iter().zip(field.chart).map(chart).collect(),
+            state: field.state,
         }
     };
-    let mut pages: Vec<Page> = atlas.pages.iter().map(empty).collect();
-    for (site, estimate) in sites.iter().zip(estimates) {
-        let page = &mut pages[site.page as usize];
-        let index = site.index as usize;
-        page.coverage[index] = site.texel.coverage.min(1.0) as f32;
-        page.raw[index] = estimate.mean.as_vec3();
-        page.stderr[index] = estimate.stderr.as_vec3();
-    }
-    for page in &mut pages {
-        page.radiance = page.raw.clone();
-        dilate(&mut page.radiance, &page.coverage, [page.width, page.height]);
+    let mut pages: Vec<Page> = fields.into_iter().map(page).collect();
+    for (Site { covered, .. }, estimate) in sites.iter().zip(estimates) {
+        let page = &mut pages[covered.page as usize];
+        page.coverage[covered.index as usize] = (covered.texel.coverage.min(1.0) * estimate.accepted) as f32;
+        page.raw[covered.index as usize] = estimate.mean.as_vec3();
+        page.density[covered.index as usize] = covered.texel.density();
+        page.is_overlapped[covered.index as usize] = covered.is_overlapped;
     }
     pages
 }

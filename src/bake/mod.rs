@@ -13,7 +13,7 @@
 
 mod atlas;
 mod balance;
-mod dilate;
+mod charts;
 mod endless;
 mod error;
 mod gather;
@@ -23,10 +23,12 @@ mod picture;
 mod plan;
 mod progress;
 mod raster;
+mod repair;
 mod report;
 mod settings;
 mod sites;
 mod texel;
+mod validity;
 mod workers;
 
 pub use error::{BakeError, BakeWarning};
@@ -36,5 +38,6 @@ pub use meter::{Measurement, MeterPoint, MeterReading, MeterSettings, measure_ir
 pub use picture::{Picture, PictureSettings, render_picture};
 pub use plan::{BakePlan, PlannedEffect, Prediction};
 pub use progress::{CancelToken, Progress, ProgressSink, Stage};
+pub use repair::TexelState;
 pub use report::{BakeReport, RelativeError};
 pub use settings::{BakeSettings, Layout};

@@ -6,7 +6,7 @@ mod reasons;
 use super::atlas::Atlas;
 use super::endless::refuse_endless_texels;
 use super::lightmap::refuse_what_cannot_be_baked;
-use super::sites::{Site, sites};
+use super::sites::{Site, Sites};
 use super::workers::Workers;
 use super::{BakeError, BakeSettings, BakeWarning, CancelToken};
 use crate::scene::Scene;
@@ -68,10 +68,10 @@ impl BakePlan {
         let Compiled { tracer, faults, census } = Compiled::new(scene, &settings.transport);
         refuse_what_cannot_be_baked(&tracer, &faults)?;
         let atlas = Atlas::new(scene, &tracer, settings)?;
-        let (sites, overlaps) = sites(scene, &tracer, &atlas, settings);
+        let Sites { seen: sites, warnings: of_uv1, .. } = Sites::new(scene, &tracer, &atlas, settings, &workers)?;
         refuse_endless_texels(scene, &tracer, &settings.transport, &sites)?;
         let mut warnings: Vec<BakeWarning> = faults.into_iter().map(BakeWarning::from).collect();
-        warnings.extend(overlaps);
+        warnings.extend(of_uv1);
         warnings.extend(BakeWarning::of_transport(&settings.transport, &census));
         let pilot = Pilot::new(&sites, settings, &workers);
         let shares = pilot.cost_shares(scene, &tracer)?;
@@ -93,8 +93,8 @@ impl BakePlan {
 }
 
 fn memory_bytes(tracer: &Tracer, atlas: &Atlas<'_>, sites: &[Site]) -> u64 {
-    // A page's layers; the scene as the tracer holds it; texels and their work.
-    let layers: u64 = atlas.pages.iter().map(|[width, height]| u64::from(*width) * u64::from(*height) * 40).sum();
+    // A page's layers, while they are repaired and after; the scene as the tracer holds it; texels and their work.
+    let layers: u64 = atlas.pages.iter().map(|[width, height]| u64::from(*width) * u64::from(*height) * 123).sum();
     let texels: usize = sites.iter().map(Site::memory_bytes).sum();
     layers + tracer.memory_bytes() + texels as u64
 }

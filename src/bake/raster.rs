@@ -15,6 +15,8 @@ pub(super) const MIN_COVERAGE: f64 = 1e-3;
 pub(super) struct Fragment {
     /// Row by row within the page.
     pub(super) texel: u32,
+    /// The chart.
+    pub(super) chart: u32,
     /// The object, as its place in the list of receivers.
     pub(super) receiver: u32,
     /// The triangle within the object.

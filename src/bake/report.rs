@@ -9,9 +9,11 @@ use std::time::Duration;
 /// What a bake did, in numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BakeReport {
-    /// Covered texels (or points, or pixels).
+    /// Measured texels (or points, or pixels).
     pub texels: u64,
-    /// Paths that started from them.
+    /// Texels that triangles cover and nobody sees, since they lie inside of bodies in the dark.
+    pub hidden: u64,
+    /// Paths that started from what was measured.
     pub samples: u64,
     /// Rays traced, shadow rays included.
     pub rays: u64,
@@ -55,6 +57,7 @@ impl BakeReport {
     ) -> Self {
         Self {
             texels: work.results.len() as u64,
+            hidden: 0,
             samples: work.results.iter().map(|estimate| estimate.samples).sum(),
             rays: work.results.iter().map(|estimate| estimate.rays).sum(),
             cpu_seconds: work.cpu.as_secs_f64(),

@@ -1,65 +1,157 @@
 //! Every texel that is to be measured, in an order that keeps neighbours together.
 
 use super::atlas::{Atlas, Chart};
-use super::gather::{Estimate, KeyKind, key};
+use super::charts::Charts;
+use super::gather::{Estimate, KeyKind, Paths, Start, key};
 use super::raster::{Fragment, MIN_COVERAGE, covered_texels};
 use super::texel::Texel;
-use super::{BakeSettings, BakeWarning, Layout};
+use super::validity::{Footing, footings};
+use super::workers::Workers;
+use super::{BakeError, BakeSettings, BakeWarning, CancelToken, Layout};
 use crate::scene::{Scene, Subject};
-use crate::trace::Tracer;
+use crate::trace::{Dimensions, Sampler, Sobol, Tally, Tracer, Transport};
+use glam::{Vec2, Vec3};
 use std::collections::BTreeMap;
 
-/// A texel to be measured.
-pub(super) struct Site {
+/// A texel that triangles cover.
+pub(super) struct Covered {
     pub(super) page: u32,
     /// Row by row within the page.
     pub(super) index: u32,
+    /// The chart that it is part of.
+    pub(super) chart: u32,
     pub(super) texel: Texel,
+    /// Whether triangles, of its chart or of others, cover more than all of it.
+    pub(super) is_overlapped: bool,
     pub(super) key: u64,
 }
 
+/// A texel to be measured.
+pub(super) struct Site {
+    pub(super) covered: Covered,
+    pub(super) footing: Footing,
+}
+
 impl Site {
+    /// One sample of E/π [cd/m²], from a place on the texel that can be reached from its anchor; `None` where the
+    /// numbers say another.
+    pub(super) fn sample(
+        &self,
+        tracer: &Tracer,
+        sobol: &Sobol,
+        start: Start,
+        transport: &Transport,
+        tally: &mut Tally,
+    ) -> Option<Vec3> {
+        let anchor = &self.footing.anchor;
+        let drawn = || {
+            let [u, v, ..] = sobol.draw(Dimensions::Start);
+            self.covered.texel.start(tracer, Vec2::new(u, v))
+        };
+        match start {
+            Start::Anywhere => Some(tracer.diffuse_radiance(anchor, sobol, transport, tally)),
+            Start::Drawn => {
+                let drawn = drawn();
+                let is_reached = tracer.is_open_between(anchor, &drawn);
+                is_reached.then(|| tracer.diffuse_radiance(&drawn, sobol, transport, tally))
+            }
+        }
+    }
+
+    /// The estimate of its light by this many paths; `None` if cancelled.
+    pub(super) fn estimate(
+        &self,
+        tracer: &Tracer,
+        count: u32,
+        transport: &Transport,
+        cancel: &CancelToken,
+    ) -> Option<Estimate> {
+        let paths = Paths { key: self.covered.key, count, clamp: transport.clamp };
+        Estimate::gather_accepted(paths, cancel, |sobol, start, tally| {
+            self.sample(tracer, sobol, start, transport, tally)
+        })
+    }
+
     /// Memory that it holds, its estimate included [bytes].
     pub(super) fn memory_bytes(&self) -> usize {
-        size_of::<Self>() + size_of::<Estimate>() + self.texel.heap_bytes()
+        size_of::<Self>() + size_of::<Estimate>() + self.covered.texel.heap_bytes()
+    }
+}
+
+/// What there is to be measured.
+pub(super) struct Sites {
+    /// Texels to be measured, in an order that keeps neighbours together.
+    pub(super) seen: Vec<Site>,
+    /// Covered texels that lie inside of bodies, in the dark.
+    pub(super) hidden: Vec<Covered>,
+    /// Objects that overlap or cover nothing.
+    pub(super) warnings: Vec<BakeWarning>,
+}
+
+impl Sites {
+    pub(super) fn new(
+        scene: &Scene,
+        tracer: &Tracer,
+        atlas: &Atlas<'_>,
+        settings: &BakeSettings,
+        workers: &Workers<'_>,
+    ) -> Result<Self, BakeError> {
+        let charts = Charts::new(tracer, &atlas.charts);
+        let (covered, warnings) = covered(scene, tracer, atlas, &charts, settings);
+        let footings = footings(tracer, atlas, &covered, settings, workers)?;
+        let (mut seen, mut hidden) = (Vec::new(), Vec::new());
+        for (covered, footing) in covered.into_iter().zip(footings) {
+            if footing.is_hidden { hidden.push(covered) } else { seen.push(Site { covered, footing }) }
+        }
+        Ok(Self { seen, hidden, warnings })
     }
 }
 
 /// Every covered texel, and warnings where objects overlap or cover none.
-pub(super) fn sites(
+fn covered(
     scene: &Scene,
     tracer: &Tracer,
     atlas: &Atlas<'_>,
+    charts: &Charts,
     settings: &BakeSettings,
-) -> (Vec<Site>, Vec<BakeWarning>) {
-    let subject = |chart: &Chart<'_>| Subject::Instance(scene.instances[chart.receiver.instance].name.clone());
-    let mut sites = Vec::new();
+) -> (Vec<Covered>, Vec<BakeWarning>) {
+    let subject = |rectangle: &Chart<'_>| Subject::Instance(scene.instances[rectangle.receiver.instance].name.clone());
+    let mut all = Vec::new();
     let mut overlapping: BTreeMap<Subject, u64> = BTreeMap::new();
     let mut is_bare = vec![true; atlas.charts.len()];
     for page in 0..atlas.pages.len() as u32 {
         let [width, _] = atlas.pages[page as usize];
-        for group in fragments(atlas, page).chunk_by(|a, b| a.texel == b.texel) {
+        for group in fragments(atlas, charts, page).chunk_by(|a, b| a.texel == b.texel) {
             let index = group[0].texel;
             let place = [index % width, index / width];
-            let texel = Texel::new(tracer, &atlas.charts, group, place);
-            if !texel.is_covered() {
-                continue;
-            }
+            let of_chart = |group: &[Fragment]| Texel::new(tracer, &atlas.charts, group, place);
+            let mut by_chart: Vec<(&[Fragment], Texel)> = group
+                .chunk_by(|a, b| a.chart == b.chart)
+                .map(|group| (group, of_chart(group)))
+                .filter(|(_, texel)| texel.is_covered())
+                .collect();
+            let coverage: f64 = by_chart.iter().map(|(_, texel)| texel.coverage).sum();
+            // A texel has one value; where charts share one, it is that of the chart that has most of it.
+            let most = (0..by_chart.len()).reduce(|most, other| {
+                if by_chart[other].1.coverage > by_chart[most].1.coverage { other } else { most }
+            });
+            let Some((group, texel)) = most.map(|most| by_chart.swap_remove(most)) else { continue };
             for fragment in group {
                 is_bare[fragment.receiver as usize] = false;
             }
-            let chart = &atlas.charts[group[0].receiver as usize];
-            if texel.coverage > 1.0 + MIN_COVERAGE {
-                *overlapping.entry(subject(chart)).or_default() += 1;
+            let rectangle = &atlas.charts[group[0].receiver as usize];
+            let is_overlapped = coverage > 1.0 + MIN_COVERAGE;
+            if is_overlapped {
+                *overlapping.entry(subject(rectangle)).or_default() += 1;
             }
-            let key = site_key(scene, chart, place, index, settings);
-            sites.push(Site { page, index, texel, key });
+            let key = site_key(scene, rectangle, place, index, settings);
+            all.push(Covered { page, index, chart: group[0].chart, texel, is_overlapped, key });
         }
     }
     let overlapping = overlapping.into_iter().map(|(subject, texels)| BakeWarning::OverlappingUv1 { subject, texels });
     let bare = atlas.charts.iter().zip(is_bare).filter(|(_, is_bare)| *is_bare);
-    let bare = bare.map(|(chart, _)| BakeWarning::NoTexels { subject: subject(chart) });
-    (sites, overlapping.chain(bare).collect())
+    let bare = bare.map(|(rectangle, _)| BakeWarning::NoTexels { subject: subject(rectangle) });
+    (all, overlapping.chain(bare).collect())
 }
 
 /// The key of a texel's random numbers: its object and its place within the object's rectangle, or its place on the
@@ -77,14 +169,16 @@ fn site_key(scene: &Scene, chart: &Chart<'_>, [x, y]: [u32; 2], index: u32, sett
 }
 
 /// What triangles cover of a page, texel by texel.
-fn fragments(atlas: &Atlas<'_>, page: u32) -> Vec<Fragment> {
+fn fragments(atlas: &Atlas<'_>, charts: &Charts, page: u32) -> Vec<Fragment> {
     let [width, _] = atlas.pages[page as usize];
     let mut fragments = Vec::new();
-    for (receiver, chart) in atlas.charts.iter().enumerate().filter(|(_, chart)| chart.page == page) {
-        for triangle in 0..chart.triangle_count() {
-            covered_texels(chart.triangle(triangle), chart.size, |x, y| {
-                let texel = (chart.origin[1] + y) * width + chart.origin[0] + x;
-                fragments.push(Fragment { texel, receiver: receiver as u32, triangle });
+    for (receiver, rectangle) in atlas.charts.iter().enumerate().filter(|(_, rectangle)| rectangle.page == page) {
+        let receiver = receiver as u32;
+        for triangle in 0..rectangle.triangle_count() {
+            let chart = charts.of(receiver, triangle);
+            covered_texels(rectangle.triangle(triangle), rectangle.size, |x, y| {
+                let texel = (rectangle.origin[1] + y) * width + rectangle.origin[0] + x;
+                fragments.push(Fragment { texel, chart, receiver, triangle });
             });
         }
     }

@@ -9,12 +9,15 @@ use glam::{DVec2, Vec2, Vec3};
 /// Points along each side of a texel at which its albedo is looked up.
 const ALBEDO_GRID: u32 = 4;
 
+/// How far a point that stands for others is drawn to the middle of its piece.
+const FROM_BORDER: f32 = 0.15;
+
 /// A piece of a triangle inside a texel, in weights of the triangle's second and third vertex.
 #[derive(Clone, Copy, Debug)]
 struct Patch {
     /// World number of the triangle.
     triangle: u32,
-    /// Unit shading normals of its vertices, or zeros for a flat one.
+    /// Unit shading normals of its vertices, or zeros for a flat one, which is then its own.
     normals: [Vec3; 3],
     corner: DVec2,
     edges: [DVec2; 2],
@@ -28,6 +31,17 @@ struct Patch {
 enum PatchShape {
     Triangle,
     Parallelogram,
+}
+
+impl Patch {
+    /// Weights of the second and third vertex in its middle.
+    fn middle(&self) -> DVec2 {
+        let share = match self.shape {
+            PatchShape::Triangle => 1.0 / 3.0,
+            PatchShape::Parallelogram => 0.5,
+        };
+        self.corner + (self.edges[0] + self.edges[1]) * share
+    }
 }
 
 /// The covered part of one texel.
@@ -54,6 +68,12 @@ impl Texel {
     /// Whether enough is covered to count.
     pub(super) fn is_covered(&self) -> bool {
         self.coverage >= MIN_COVERAGE
+    }
+
+    /// Texels per metre of the surface: 1 over the side of a square of what a whole texel covers [1/m]; 0 without any.
+    pub(super) fn density(&self) -> f32 {
+        let area: f64 = self.areas.iter().map(|(_, area)| area).sum();
+        if area > 0.0 { (self.coverage / area).sqrt() as f32 } else { 0.0 }
     }
 
     /// Memory behind its lists [bytes].
@@ -103,14 +123,16 @@ impl Texel {
     /// A start of paths at a point of the covered part, uniform over its area in the texel.
     pub(super) fn start(&self, tracer: &Tracer, u: Vec2) -> PathStart {
         let (patch, barycentric) = self.point(u);
-        let [second, third] = barycentric;
-        let [a, b, c] = patch.normals;
-        let smooth = a * (1.0 - second - third) + b * second + c * third;
-        let flat = tracer.normal(patch.triangle);
-        let normal = smooth.try_normalize().unwrap_or(flat);
-        // Normals that point into the surface come from broken exports; the flat one is then the better guess.
-        let normal = if normal.dot(flat) > 0.0 { normal } else { flat };
-        tracer.start_on_triangle(patch.triangle, barycentric, normal)
+        tracer.start_on_smooth_triangle(patch.triangle, barycentric, patch.normals)
+    }
+
+    /// A start that stands for the places around it: the same, drawn away from the borders of the piece that it lies on,
+    /// where other surfaces often meet this one.
+    pub(super) fn inner_start(&self, tracer: &Tracer, u: Vec2) -> PathStart {
+        let (patch, [second, third]) = self.point(u);
+        let middle = patch.middle();
+        let weights = Vec2::new(second, third).lerp(middle.as_vec2(), FROM_BORDER);
+        tracer.start_on_smooth_triangle(patch.triangle, weights.to_array(), patch.normals)
     }
 
     /// Mean albedo of the covered part.

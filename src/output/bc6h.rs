@@ -82,7 +82,7 @@ mod tests {
         let weights = [0, 4, 9, 13, 17, 21, 26, 30, 34, 38, 43, 47, 51, 55, 60, 64];
         for (colour, weight) in decode(&made, 4).iter().zip(weights) {
             let mixed = (unpacked[0] * (64 - weight) + unpacked[1] * weight + 32) >> 6;
-            let red = f16::from_bits((mixed * 31 >> 6) as u16).to_f32();
+            let red = f16::from_bits(((mixed * 31) >> 6) as u16).to_f32();
             assert_eq!(*colour, [red, 0.0, MAX]);
         }
     }

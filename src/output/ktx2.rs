@@ -295,7 +295,7 @@ mod tests {
             let row = texel_bytes(&page, TexelFormat::Rgba16f).bytes;
             assert_eq!(texels, [&row[..], &row[..]].concat());
         }
-        let empty = Page { width: 0, height: 0, radiance: vec![], coverage: vec![], raw: vec![], stderr: vec![] };
+        let empty = Page::default();
         let (header, texels) = load(&ktx2_bytes(&empty, TexelFormat::Rgb9e5).bytes);
         assert_eq!((header.pixel_width, header.pixel_height, texels), (1, 2, vec![0; 8]));
     }

@@ -11,6 +11,7 @@ mod exr;
 mod format;
 mod ktx2;
 mod lightmap;
+mod overview;
 mod picture;
 mod png;
 mod rgb9e5;

@@ -1,7 +1,7 @@
 //! What the tests of the encoders share: pages, and what lies in a folder.
 
 use crate::artefact::{MeshHash, StableId};
-use crate::bake::{BakeReport, LaidOutMesh, Lightmap, Page, Placement};
+use crate::bake::{BakeReport, LaidOutMesh, Lightmap, Page, Placement, TexelState};
 use glam::{Vec2, Vec3};
 use std::fs;
 use std::path::Path;
@@ -19,7 +19,10 @@ pub(super) fn page(width: u32, height: u32) -> Page {
         radiance: texels.clone().map(texel).collect(),
         coverage: texels.clone().map(|index| if (index + 1) % width == 0 { 0.0 } else { 0.75 }).collect(),
         raw: texels.clone().map(|index| texel(index) * 1.01).collect(),
-        stderr: texels.map(|index| texel(index) * 0.02).collect(),
+        stderr: texels.clone().map(|index| texel(index) * 0.02).collect(),
+        state: vec![TexelState::Measured; (width * height) as usize],
+        chart: vec![1; (width * height) as usize],
+        ..Page::default()
     }
 }
 

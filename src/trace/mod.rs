@@ -4,6 +4,7 @@
 
 mod accel;
 mod aim;
+mod around;
 mod attributes;
 mod bsdf;
 mod census;

@@ -37,8 +37,9 @@ fn absorbed(scene: &Scene, lightmap: &Lightmap) -> Mean {
         let texel = |uv: [f32; 2]| [(uv[0] * page.width as f32) as usize, (uv[1] * page.height as f32) as usize];
         let ([left, top], [right, bottom]) = (texel(place.uv_min), texel(place.uv_max));
         let texels = (top..bottom).flat_map(|y| (left..right).map(move |x| y * page.width as usize + x));
-        let values: Vec<[f64; 2]> =
-            texels.map(|index| [page.raw[index].y, page.stderr[index].y].map(f64::from)).collect();
+        let values: Vec<[f64; 2]> = texels
+            .map(|index| [page.raw[index].y, page.stderr[index].y].map(|light| f64::from(light * page.coverage[index])))
+            .collect();
         let count = values.len() as f64;
         let value = values.iter().map(|[value, _]| value).sum::<f64>() / count;
         let error = values.iter().map(|[_, error]| error * error).sum::<f64>().sqrt() / count;

@@ -62,6 +62,7 @@ fn write(dir: &Path, mesh: LaidOutMesh) {
         coverage: vec![1.0; texels],
         raw: vec![Vec3::ONE; texels],
         stderr: vec![Vec3::ZERO; texels],
+        ..Page::default()
     };
     let placement = |name: &str, mesh| bake::Placement {
         id: StableId::new(format!("room/{name}")),

@@ -1,14 +1,13 @@
 //! The pilot: a few texels, traced to tell what all of them will cost.
 
 use crate::bake::endless::refuse_endless_texels;
-use crate::bake::gather::{Estimate, Paths, relative_error};
+use crate::bake::gather::{Estimate, relative_error};
 use crate::bake::plan::Prediction;
 use crate::bake::sites::Site;
 use crate::bake::workers::Workers;
 use crate::bake::{BakeError, BakeSettings};
 use crate::scene::Scene;
-use crate::trace::{Compiled, Dimensions, Effect, Sampler, Tracer};
-use glam::Vec2;
+use crate::trace::{Compiled, Effect, Tracer};
 use std::time::Instant;
 
 /// Texels that the pilot traces.
@@ -82,14 +81,9 @@ impl<'a> Pilot<'a> {
         let pilot: Vec<&Site> = self.sites.iter().step_by(step).collect();
         let transport = &self.settings.transport;
         let clock = Instant::now();
-        let estimates = self.workers.gather_quietly(&pilot, |site, cancel| {
-            let paths = Paths { key: site.key, count: paths as u32, clamp: transport.clamp };
-            Estimate::gather(paths, cancel, |sobol, tally| {
-                let [u, v, ..] = sobol.draw(Dimensions::Start);
-                let start = site.texel.start(tracer, Vec2::new(u, v));
-                tracer.diffuse_radiance(&start, sobol, transport, tally)
-            })
-        })?;
+        let estimates = self
+            .workers
+            .gather_quietly(&pilot, |site, cancel| site.estimate(tracer, paths as u32, transport, cancel))?;
         Ok((estimates, clock.elapsed().as_secs_f64()))
     }
 }

@@ -243,6 +243,7 @@ mod tests {
             coverage: vec![1.0; 16],
             raw: vec![Vec3::splat(radiance); 16],
             stderr: vec![Vec3::ZERO; 16],
+            ..Page::default()
         };
         let mesh = LaidOutMesh {
             source: 0,

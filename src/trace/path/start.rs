@@ -30,8 +30,18 @@ impl PathStart {
     }
 
     /// Unit normal that receives.
-    pub(in crate::trace) fn normal(&self) -> Vec3 {
+    pub(crate) fn normal(&self) -> Vec3 {
         self.normal
+    }
+
+    /// Unit normal of the flat surface, on the side that receives.
+    pub(crate) fn geometric_normal(&self) -> Vec3 {
+        self.geometric_normal
+    }
+
+    /// The point itself, in the traced frame [m].
+    pub(crate) fn position(&self) -> Vec3 {
+        self.position
     }
 
     /// A start in mid-air.
@@ -46,6 +56,41 @@ impl Tracer {
     pub(crate) fn start_on_triangle(&self, triangle: u32, barycentric: [f32; 2], normal: Vec3) -> PathStart {
         let shape = &self.triangles[triangle as usize];
         PathStart::new(shape, shape.position(barycentric), normal)
+    }
+
+    /// A start of paths on a triangle that stands for a smooth surface: of these unit normals at its vertices, between
+    /// which the receiving one is interpolated.
+    ///
+    /// The point is lifted to where the smooth surface is. From the flat triangle, light that comes in flat over the
+    /// smooth surface is hidden by the neighbours, which shows as facets along the edge of the shadow (the terminator).
+    /// The lift is the interpolation of the point's projections onto the tangent planes at the vertices that lie above
+    /// it (Hanika 2021, "Hacking the Shadow Terminator", Ray Tracing Gems II, chapter 4); nothing is moved through a
+    /// surface, and nothing where all normals are the triangle's own.
+    pub(crate) fn start_on_smooth_triangle(
+        &self,
+        triangle: u32,
+        barycentric: [f32; 2],
+        normals: [Vec3; 3],
+    ) -> PathStart {
+        let shape = &self.triangles[triangle as usize];
+        let [second, third] = barycentric;
+        let weights = [1.0 - second - third, second, third];
+        let smooth: Vec3 = (0..3).map(|vertex| normals[vertex] * weights[vertex]).sum();
+        // Normals that point into the surface come from broken exports; the flat one is then the better guess.
+        let smooth = smooth.try_normalize().filter(|smooth| smooth.dot(shape.normal) > 0.0);
+        let Some(normal) = smooth else { return PathStart::new(shape, shape.position(barycentric), shape.normal) };
+        let position = shape.position(barycentric);
+        let start = PathStart::new(shape, position, normal);
+        let above = |vertex: usize| {
+            let height = (position - shape.vertices[vertex]).dot(normals[vertex]);
+            normals[vertex] * (-height).max(0.0) * weights[vertex]
+        };
+        let lift: Vec3 = (0..3).map(above).sum();
+        // What is below the rounding of the points themselves lifts nothing.
+        if lift.abs().cmple(shape.error).all() || self.accel.is_blocked(start.origin, start.origin + lift) {
+            return start;
+        }
+        PathStart { position: position + lift, origin: start.origin + lift, ..start }
     }
 
     /// A start of paths at a point of the world. Within 1e-5 of the scene's extent from a surface the point counts as

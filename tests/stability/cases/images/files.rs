@@ -146,7 +146,15 @@ pub const CASES: &[Case] = &[
 /// A page of four covered grey texels.
 fn page(values: &[f32; 4]) -> Page {
     let radiance: Vec<Vec3> = values.iter().map(|&value| Vec3::splat(value)).collect();
-    Page { width: 2, height: 2, raw: radiance.clone(), stderr: vec![Vec3::ZERO; 4], radiance, coverage: vec![1.0; 4] }
+    Page {
+        width: 2,
+        height: 2,
+        raw: radiance.clone(),
+        stderr: vec![Vec3::ZERO; 4],
+        radiance,
+        coverage: vec![1.0; 4],
+        ..Page::default()
+    }
 }
 
 /// Colours of a file's texels, by the formats' own definitions.
@@ -163,6 +171,7 @@ fn decoded(bytes: &[u8], format: TexelFormat) -> Vec<[f64; 3]> {
     };
     let texel = |texel: &[u8]| match format {
         TexelFormat::Rgba16f => [0, 2, 4].map(|at| half(u16::from_le_bytes([texel[at], texel[at + 1]]))),
+        TexelFormat::Bc6h => unreachable!("its texels are judged by a decoder of blocks"),
         TexelFormat::Rgb9e5 => {
             let bits = u32::from_le_bytes([texel[0], texel[1], texel[2], texel[3]]);
             let scale = 2.0_f64.powi((bits >> 27) as i32 - 24);

@@ -1,0 +1,220 @@
+//! Walls that stand on a chart: texture filtering must not carry light across them.
+//!
+//! A floor that runs on under a wall is one chart. Its texels on either side of the wall are neighbours, and a bilinear
+//! or bicubic lookup between them mixes both sides, however thin or thick the wall: light leaks into a dark room at the
+//! foot of its walls. A chart cannot be bent around the wall, so one side must give way. Where the sides differ by more
+//! than [`SAME`], the brighter one does, within the reach of the lookups: shade at the outer foot of a wall is
+//! what one expects there, a bright rim in a dark room is not.
+//!
+//! Two texels are on different sides if one cannot be reached from the other by links between neighbours within
+//! [`WINDOW`] texels: so the leg of a table, around which one can go, is no wall.
+
+use super::Field;
+use crate::math::{Portable, luminance};
+
+/// How far a lookup reads: a bicubic one reads two texels to either side of the texel that it lies in.
+const REACH: i32 = 2;
+
+/// How far it is looked for a way around.
+const WINDOW: i32 = 8;
+
+/// Ratio of the sides' brightness up to which nothing is done, and from which the brighter side is held to the other.
+const SAME: f64 = 2.0;
+const OTHER: f64 = 8.0;
+
+/// Holds the brighter side of walls to the darker one, in place.
+pub(super) fn stop_light_at_walls(field: &mut Field) {
+    let mut caps: Vec<(usize, f64)> = Vec::new();
+    let mut walk = Walk::default();
+    for here in (0..field.value.len()).filter(|&index| field.is_measured(index)) {
+        let beyond = beyond(field, here, &mut walk);
+        if beyond.is_empty() {
+            continue;
+        }
+        let level = level(field, here, &walk);
+        for there in beyond {
+            let brightness = luminance(field.value[there].as_dvec3());
+            let cap = brightness.min(held_to(level, brightness));
+            if cap < brightness {
+                caps.push((there, cap));
+            }
+        }
+    }
+    // The least of several caps holds, in whatever order they were found.
+    caps.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    caps.dedup_by_key(|(index, _)| *index);
+    for (index, cap) in caps {
+        let brightness = luminance(field.value[index].as_dvec3());
+        field.value[index] *= (cap / brightness) as f32;
+    }
+}
+
+/// What is left of a brightness on the other side of a wall from a darker level.
+fn held_to(level: f64, brightness: f64) -> f64 {
+    if brightness <= SAME * level {
+        return brightness;
+    }
+    if brightness >= OTHER * level {
+        return level;
+    }
+    // Without a step between the two.
+    let part = Portable::ln(brightness / level / SAME) / Portable::ln(OTHER / SAME);
+    let part = part * part * (3.0 - 2.0 * part);
+    level * Portable::exp((1.0 - part) * Portable::ln(brightness / level))
+}
+
+/// Measured texels of the same chart that lookups on this side may read and that lie on the other side of a wall.
+fn beyond(field: &Field, here: usize, walk: &mut Walk) -> Vec<usize> {
+    let apart = |walk: &Walk, index: usize| {
+        field.is_measured(index) && field.chart[index] == field.chart[here] && !walk.has_reached(index)
+    };
+    let within = |centre: usize, reach: i32| {
+        let steps = (-reach..=reach).flat_map(move |y| (-reach..=reach).map(move |x| [x, y]));
+        steps.filter_map(move |step| field.step(centre, step))
+    };
+    // A short walk finds most neighbours where there is no wall.
+    walk.reach(field, here, REACH);
+    if !within(here, REACH).any(|index| apart(walk, index)) {
+        return Vec::new();
+    }
+    walk.reach(field, here, WINDOW);
+    let mut beyond: Vec<usize> = within(here, REACH).filter(|&index| apart(walk, index)).collect();
+    // A texel across which the wall runs has a part on this side, from which lookups reach farther.
+    let split: Vec<usize> = within(here, 1).filter(|&index| apart(walk, index) && field.is_split[index]).collect();
+    for texel in split {
+        beyond.extend(within(texel, REACH).filter(|&index| apart(walk, index)));
+    }
+    beyond.sort_unstable();
+    beyond.dedup();
+    beyond
+}
+
+/// How bright this side is about a texel: the mean of what can be reached nearby, and its error.
+fn level(field: &Field, here: usize, walk: &Walk) -> f64 {
+    let steps = (-REACH..=REACH).flat_map(|y| (-REACH..=REACH).map(move |x| [x, y]));
+    let (mut sum, mut variance, mut count) = (0.0, 0.0, 0.0);
+    for index in steps.filter_map(|step| field.step(here, step)).filter(|&index| walk.has_reached(index)) {
+        sum += luminance(field.value[index].as_dvec3());
+        variance += luminance((field.stderr[index] * field.stderr[index]).as_dvec3());
+        count += 1.0;
+    }
+    (sum + 2.0 * f64::sqrt(variance)) / f64::max(count, 1.0)
+}
+
+/// The texels that can be reached from one of them.
+#[derive(Default)]
+struct Walk {
+    reached: Vec<usize>,
+}
+
+impl Walk {
+    /// Walks over links, at most `reach` texels away along each axis.
+    fn reach(&mut self, field: &Field, from: usize, reach: i32) {
+        let width = field.size[0] as i32;
+        let place = |index: usize| [index as i32 % width, index as i32 / width];
+        let [x, y] = place(from);
+        self.reached.clear();
+        self.reached.push(from);
+        let mut seen = vec![false; ((2 * reach + 1) * (2 * reach + 1)) as usize];
+        let window = |index: usize| {
+            let [column, row] = place(index);
+            let [column, row] = [column - x, row - y];
+            let is_near = column.abs() <= reach && row.abs() <= reach;
+            is_near.then_some(((row + reach) * (2 * reach + 1) + column + reach) as usize)
+        };
+        seen[(reach * (2 * reach + 1) + reach) as usize] = true;
+        let mut next = 0;
+        while let Some(&index) = self.reached.get(next) {
+            next += 1;
+            for step in NEIGHBOURS.into_iter().filter(|&step| field.links[index].reaches(step)) {
+                let Some(neighbour) = field.step(index, step) else { continue };
+                let Some(place) = window(neighbour) else { continue };
+                if !std::mem::replace(&mut seen[place], true) {
+                    self.reached.push(neighbour);
+                }
+            }
+        }
+        self.reached.sort_unstable();
+    }
+
+    fn has_reached(&self, index: usize) -> bool {
+        self.reached.binary_search(&index).is_ok()
+    }
+}
+
+/// Steps to the eight neighbours.
+const NEIGHBOURS: [[i32; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bake::repair::TexelState;
+    use crate::bake::validity::Links;
+    use glam::Vec3;
+
+    fn white(brightness: f32) -> Vec3 {
+        Vec3::splat(brightness)
+    }
+
+    /// A chart of 16 × 16 texels, bright on the right of a wall between columns 7 and 8 that has a gap above `gap`.
+    fn walled(dark: f32, bright: f32, gap: u32) -> Field {
+        let mut field = Field::empty([16, 16]);
+        for index in 0..256_usize {
+            let [x, y] = [index as u32 % 16, index as u32 / 16];
+            field.state[index] = TexelState::Measured;
+            field.value[index] = white(if x < 8 { dark } else { bright });
+            let mut links = Links::default();
+            for step in NEIGHBOURS {
+                let crosses = matches!((x, step[0]), (7, 1) | (8, -1));
+                let is_on_page = field.step(index, step).is_some();
+                if is_on_page && (!crosses || y >= gap) {
+                    links.add(step);
+                }
+            }
+            field.links[index] = links;
+        }
+        field
+    }
+
+    #[test]
+    fn the_bright_side_gives_way_within_reach() {
+        let mut field = walled(0.0, 4.0, 99);
+        stop_light_at_walls(&mut field);
+        for index in 0..256 {
+            let expected = if index % 16 < 10 { 0.0 } else { 4.0 };
+            assert_eq!(field.value[index], white(expected), "{index}");
+        }
+    }
+
+    #[test]
+    fn what_is_about_as_bright_stays() {
+        let before = walled(1.0, 1.9, 99);
+        let mut field = before.clone();
+        stop_light_at_walls(&mut field);
+        assert_eq!(field.value, before.value);
+    }
+
+    /// Around the end of a wall one can go, so there its sides are one place.
+    #[test]
+    fn the_end_of_a_wall_parts_nothing() {
+        let mut field = walled(0.0, 4.0, 10);
+        stop_light_at_walls(&mut field);
+        for y in 0..16_usize {
+            let is_held = field.value[16 * y + 8] == white(0.0);
+            // Texels two rows from the end and more have no way around within the window.
+            assert_eq!(is_held, y + (WINDOW as usize) < 10 || y < 4, "{y}: {}", field.value[16 * y + 8]);
+        }
+    }
+
+    #[test]
+    fn there_is_no_step_in_how_much_gives_way() {
+        let mut last = held_to(1.0, 1.0);
+        for step in 0..2000 {
+            let brightness = 1.0 + 0.005 * f64::from(step);
+            let held = held_to(1.0, brightness);
+            assert!((held - last).abs() < 0.01 && (1.0..=2.7).contains(&held), "{brightness}: {held}");
+            last = held;
+        }
+        assert_eq!(held_to(0.0, 3.0), 0.0);
+    }
+}

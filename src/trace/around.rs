@@ -1,0 +1,88 @@
+//! What the surfaces around a point say about it: whether one can go from there to another point close by, and
+//! whether it lies inside a body. Owns the two questions that tell which points of a lightmap can be measured and
+//! which of them belong together; traces no light.
+//!
+//! Surfaces that let light pass straight ([`Surface::passes`](super::material::Surface)) neither part nor enclose.
+
+use super::path::PathStart;
+use super::tracer::Tracer;
+use crate::math::{Frame, square_to_uniform_hemisphere};
+use glam::{Vec2, Vec3};
+
+/// Directions in which it is looked whether a point lies inside a body.
+const DIRECTIONS: usize = 16;
+
+/// How many of them are looked at first: a point that sees a back in none of these is taken for free.
+const FIRST_DIRECTIONS: usize = 4;
+
+/// Height of the second way over what stands between two points, in their distance: what is lower parts nothing.
+const STEP: f32 = 0.5;
+
+impl Tracer {
+    /// Whether one can go from one start to another close by, along the surface that they lie on, without passing
+    /// through a surface. The way is the shorter two sides of a triangle over what lies between: as high as the tangent
+    /// planes of a convex surface meet, and, where that is blocked, half the points' distance higher.
+    pub(crate) fn is_open_between(&self, from: &PathStart, to: &PathStart) -> bool {
+        let (a, b) = (from.origin(), to.origin());
+        let offset = b - a;
+        if offset == Vec3::ZERO {
+            return true;
+        }
+        let drop = (-offset.dot(from.geometric_normal())).max(0.0) + offset.dot(to.geometric_normal()).max(0.0);
+        let up = (from.geometric_normal() + to.geometric_normal()).normalize_or_zero();
+        let distance = offset.length();
+        let height = 0.5 * drop;
+        // Over a plane the way is straight.
+        if height <= 1e-4 * distance {
+            return !self.is_parted(a, b) || self.is_open_over(a, b, up * (STEP * distance));
+        }
+        self.is_open_over(a, b, up * height) || self.is_open_over(a, b, up * (height + STEP * distance))
+    }
+
+    fn is_open_over(&self, a: Vec3, b: Vec3, rise: Vec3) -> bool {
+        let top = a + 0.5 * (b - a) + rise;
+        !self.is_parted(a, top) && !self.is_parted(top, b)
+    }
+
+    /// Whether a surface that blocks light lies on the open segment between two points of the traced frame.
+    fn is_parted(&self, a: Vec3, b: Vec3) -> bool {
+        self.accel.meets(a, b, |hit| !self.surface(hit.triangle).passes)
+    }
+
+    /// Whether a start lies inside a body. In most of [`DIRECTIONS`] over its surface a ray then leaves bodies once more
+    /// than it enters any: the winding number of the surfaces around the point, which tells inside from outside also
+    /// where bodies overlap, and where they have holes below half of what is seen (Jacobson, Kavan and Sorkine-Hornung
+    /// 2013). Rooms whose walls face inwards count as the outside that they are seen from.
+    pub(crate) fn is_enclosed(&self, start: &PathStart) -> bool {
+        let frame = Frame::new(start.geometric_normal());
+        let direction = |index: usize| {
+            // The plastic number's sequence (Roberts 2018): spread evenly however many are taken.
+            let index = index as f64 + 0.5;
+            let place = glam::DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_2) * index;
+            frame.world_from_local(square_to_uniform_hemisphere(
+                (place - place.floor()).as_vec2().min(Vec2::splat(0.999_999)),
+            ))
+        };
+        let sees_a_back = |direction: Vec3| {
+            let hit = self.accel.closest(start.origin(), direction, f32::INFINITY);
+            hit.is_some_and(|hit| {
+                self.surface(hit.triangle).passes || self.triangles[hit.triangle as usize].normal.dot(direction) > 0.0
+            })
+        };
+        if !(0..FIRST_DIRECTIONS).map(direction).any(sees_a_back) {
+            return false;
+        }
+        let is_left_by = |direction: Vec3| {
+            let mut left = 0_i32;
+            self.accel.meets_towards(start.origin(), direction, |hit| {
+                if !self.surface(hit.triangle).passes {
+                    let shape = &self.triangles[hit.triangle as usize];
+                    left += if shape.normal.dot(direction) > 0.0 { 1 } else { -1 };
+                }
+                false
+            });
+            left > 0
+        };
+        2 * (0..DIRECTIONS).map(direction).filter(|&direction| is_left_by(direction)).count() > DIRECTIONS
+    }
+}
