@@ -261,7 +261,7 @@ fn wrong_arguments_and_what_is_not_there_yet() {
         (&["bake", scene, "-o", "x", "--density", "0"], "--density"),
         (&["bake", scene, "-o", "x", "--layout", "shared"], "--size"),
         (&["bake", scene, "-o", "x", "--size", "64"], "--layout shared"),
-        (&["bake", scene, "-o", "x", "--format", "jpg"], "use rgb9e5, rgba16f or exr"),
+        (&["bake", scene, "-o", "x", "--format", "jpg"], "use rgb9e5, rgba16f, bc6h or exr"),
         (&["bake", scene, "-o", "x", "--emissive", "lumens"], "use nits"),
         (&["bake", scene, "-o", "x", "--error", "2%"], "`--error` is not there yet"),
         (&["bake", scene, "-o", "x", "--time", "5m"], "`--time` is not there yet"),

@@ -10,6 +10,8 @@ mod glb;
 mod lights;
 #[path = "plugin/materials.rs"]
 mod materials;
+#[path = "plugin/meshes.rs"]
+mod meshes;
 
 use bevy::ecs::system::RunSystemOnce;
 use bevy::gltf::Gltf;

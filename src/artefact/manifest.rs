@@ -8,7 +8,7 @@ use thiserror::Error;
 pub const MANIFEST_FILE: &str = "kiln.ron";
 
 /// The version that this library writes, and the newest that it reads.
-pub const MANIFEST_VERSION: u32 = 1;
+pub const MANIFEST_VERSION: u32 = 2;
 
 /// Everything that a game must know to put a bake on its entities.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,6 +25,10 @@ pub struct Manifest {
     pub pages: Vec<Page>,
     /// Which part of which page each object shows.
     pub placements: Vec<Placement>,
+    /// File name inside the folder of the meshes that the bake laid out anew; `None` if there are none. Since
+    /// version 2.
+    #[serde(default)]
+    pub meshes: Option<String>,
     /// Lights whose direct light is in the texels and must not be added again.
     pub baked_lights: Vec<BakedLight>,
 }
@@ -51,6 +55,10 @@ pub struct Placement {
     pub uv_min: [f32; 2],
     /// Largest corner.
     pub uv_max: [f32; 2],
+    /// Index into what [`Manifest::meshes`] holds; `None` for an object with lightmap coordinates of its own. Since
+    /// version 2.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<u32>,
 }
 
 /// A light that the texels already hold.
@@ -86,6 +94,12 @@ pub enum ManifestError {
         /// The page asked for.
         page: u32,
     },
+    /// A placement names a mesh, and there is no file of meshes.
+    #[error("{MANIFEST_FILE} puts \"{id}\" on a mesh of a file that it does not name; bake the scene again")]
+    MissingMeshes {
+        /// The object.
+        id: StableId,
+    },
 }
 
 impl Manifest {
@@ -99,6 +113,9 @@ impl Manifest {
         for placement in &manifest.placements {
             if placement.page as usize >= manifest.pages.len() {
                 return Err(ManifestError::MissingPage { id: placement.id.clone(), page: placement.page });
+            }
+            if placement.mesh.is_some() && manifest.meshes.is_none() {
+                return Err(ManifestError::MissingMeshes { id: placement.id.clone() });
             }
         }
         Ok(manifest)
@@ -122,7 +139,11 @@ mod tests {
             scene: "a.glb".into(),
             texel_unit: "E/pi [cd/m^2]".into(),
             pages: vec![Page { file: "lightmap_0.ktx2".into(), width: 4, height: 8 }],
-            placements: vec![Placement { id: StableId::new("a/b"), page: 0, uv_min: [0.25, 0.0], uv_max: [0.5, 1.0] }],
+            placements: vec![
+                Placement { id: StableId::new("a/b"), page: 0, uv_min: [0.25, 0.0], uv_max: [0.5, 1.0], mesh: Some(3) },
+                Placement { id: StableId::new("a/c"), page: 0, uv_min: [0.0, 0.0], uv_max: [0.25, 1.0], mesh: None },
+            ],
+            meshes: Some("meshes.kiln".into()),
             baked_lights: vec![BakedLight { id: StableId::new("lamp") }],
         }
     }
@@ -139,6 +160,24 @@ mod tests {
         let mut missing = manifest();
         missing.placements[0].page = 1;
         assert!(matches!(Manifest::from_ron(&missing.to_ron()), Err(ManifestError::MissingPage { page: 1, .. })));
+        let nameless = Manifest { meshes: None, ..manifest() };
+        assert_eq!(
+            Manifest::from_ron(&nameless.to_ron()),
+            Err(ManifestError::MissingMeshes { id: StableId::new("a/b") })
+        );
         assert!(matches!(Manifest::from_ron("(version: 1"), Err(ManifestError::Syntax { .. })));
+    }
+
+    #[test]
+    fn version_1_is_still_read() {
+        let text = r#"(
+            version: 1, generator: "bevy_kiln 0", scene: "a.glb", texel_unit: "E/pi [cd/m^2]",
+            pages: [(file: "lightmap_0.ktx2", width: 4, height: 8)],
+            placements: [(id: "a/c", page: 0, uv_min: (0.0, 0.0), uv_max: (0.25, 1.0))],
+            baked_lights: [(id: "lamp")],
+        )"#;
+        let mut expected = Manifest { version: 1, meshes: None, ..manifest() };
+        expected.placements.remove(0);
+        assert_eq!(Manifest::from_ron(text), Ok(expected));
     }
 }

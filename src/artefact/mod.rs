@@ -1,7 +1,12 @@
 //! What a bake leaves behind, as plain data that a shipped game reads without the tracer.
 
 mod manifest;
+mod mesh_hash;
+mod mesh_layout;
+mod mixing;
 mod stable_id;
 
 pub use manifest::{BakedLight, MANIFEST_FILE, MANIFEST_VERSION, Manifest, ManifestError, Page, Placement};
+pub use mesh_hash::MeshHash;
+pub use mesh_layout::{MESHES_FILE, MESHES_VERSION, MeshLayout, MeshLayoutError};
 pub use stable_id::StableId;

@@ -51,6 +51,10 @@ pub struct Page {
     pub state: Vec<TexelState>,
     /// One more than the number of its chart in the bake; 0 where no triangle covers it.
     pub chart: Vec<u32>,
+    /// Texels per metre of the surface that was measured; 0 where none was [1/m].
+    pub density: Vec<f32>,
+    /// Whether triangles or charts overlap there.
+    pub is_overlapped: Vec<bool>,
 }
 
 /// Where an object's unit square of UV1 lies on a page.
@@ -146,6 +150,8 @@ fn pages(fields: Vec<Field>, sites: &[Site], estimates: &[Estimate]) -> Vec<Page
             coverage: vec![0.0; count],
             raw: vec![Vec3::ZERO; count],
             stderr: field.stderr,
+            density: vec![0.0; count],
+            is_overlapped: vec![false; count],
             chart: field.state.iter().zip(field.chart).map(chart).collect(),
             state: field.state,
         }
@@ -155,6 +161,8 @@ fn pages(fields: Vec<Field>, sites: &[Site], estimates: &[Estimate]) -> Vec<Page
         let page = &mut pages[covered.page as usize];
         page.coverage[covered.index as usize] = (covered.texel.coverage.min(1.0) * estimate.accepted) as f32;
         page.raw[covered.index as usize] = estimate.mean.as_vec3();
+        page.density[covered.index as usize] = covered.texel.density();
+        page.is_overlapped[covered.index as usize] = covered.is_overlapped;
     }
     pages
 }

@@ -21,6 +21,8 @@ pub(super) struct Covered {
     /// The chart that it is part of.
     pub(super) chart: u32,
     pub(super) texel: Texel,
+    /// Whether triangles, of its chart or of others, cover more than all of it.
+    pub(super) is_overlapped: bool,
     pub(super) key: u64,
 }
 
@@ -135,11 +137,12 @@ fn covered(
                 is_bare[fragment.receiver as usize] = false;
             }
             let rectangle = &atlas.charts[group[0].receiver as usize];
-            if coverage > 1.0 + MIN_COVERAGE {
+            let is_overlapped = coverage > 1.0 + MIN_COVERAGE;
+            if is_overlapped {
                 *overlapping.entry(subject(rectangle)).or_default() += 1;
             }
             let key = site_key(scene, rectangle, place, index, settings);
-            all.push(Covered { page, index, chart: group[0].chart, texel, key });
+            all.push(Covered { page, index, chart: group[0].chart, texel, is_overlapped, key });
         }
     }
     let overlapping = overlapping.into_iter().map(|(subject, texels)| BakeWarning::OverlappingUv1 { subject, texels });

@@ -70,6 +70,12 @@ impl Texel {
         self.coverage >= MIN_COVERAGE
     }
 
+    /// Texels per metre of the surface: 1 over the side of a square of what a whole texel covers [1/m]; 0 without any.
+    pub(super) fn density(&self) -> f32 {
+        let area: f64 = self.areas.iter().map(|(_, area)| area).sum();
+        if area > 0.0 { (self.coverage / area).sqrt() as f32 } else { 0.0 }
+    }
+
     /// Memory behind its lists [bytes].
     pub(super) fn heap_bytes(&self) -> usize {
         self.patches.capacity() * size_of::<Patch>() + self.areas.capacity() * size_of::<(u32, f64)>()

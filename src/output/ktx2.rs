@@ -4,6 +4,7 @@
 //! format descriptor, key and value data, one level, compressed by Zstandard (RFC 8878) where that helps. What a
 //! texel is made of belongs to `texels`.
 
+use super::bc6h::SIDE;
 use super::format::TexelFormat;
 use super::texels::{Encoded, texel_bytes};
 use crate::bake::Page;
@@ -24,19 +25,28 @@ const MIN_HEIGHT: u32 = 2;
 /// A page as the bytes of a KTX2 file: two-dimensional, one level, row 0 at v = 0. A page that is one texel high is
 /// stored with its row repeated, which looks the same under every v.
 pub fn ktx2_bytes(page: &Page, format: TexelFormat) -> Encoded {
-    let Encoded { bytes: mut texels, clamped } = texel_bytes(page, format);
-    let (width, height) = stored_size(page);
+    let Encoded { bytes, clamped } = texel_bytes(page, format);
+    Encoded { bytes: file_of(page, format, bytes), clamped }
+}
+
+/// The file of a page whose texels are encoded already.
+pub(super) fn file_of(page: &Page, format: TexelFormat, mut texels: Vec<u8>) -> Vec<u8> {
+    let (width, height) = stored_size(page, format);
     // Repeats the only row, or blackens a page without any.
     texels.extend_from_within(..);
-    texels.truncate((page.width as usize * height as usize) * format.bytes_per_texel());
+    texels.truncate(width as usize * height as usize * format.bytes_per_texel());
     texels.resize(width as usize * height as usize * format.bytes_per_texel(), 0);
-    let bytes = container(width, height, format, &texels);
-    Encoded { bytes, clamped }
+    container(width, height, format, &texels)
 }
 
 /// Size of the texture that stores a page [texels].
-pub(super) fn stored_size(page: &Page) -> (u32, u32) {
-    (page.width.max(1), page.height.max(MIN_HEIGHT))
+pub(super) fn stored_size(page: &Page, format: TexelFormat) -> (u32, u32) {
+    let least = match format {
+        TexelFormat::Rgb9e5 | TexelFormat::Rgba16f => [1, MIN_HEIGHT],
+        TexelFormat::Bc6h => [SIDE; 2],
+    };
+    let [width, height] = format.stored_size(page);
+    (width.max(least[0]), height.max(least[1]))
 }
 
 /// The file around a level.
@@ -44,8 +54,9 @@ fn container(width: u32, height: u32, format: TexelFormat, texels: &[u8]) -> Vec
     let vulkan_format = match format {
         TexelFormat::Rgb9e5 => Format::E5B9G9R9_UFLOAT_PACK32,
         TexelFormat::Rgba16f => Format::R16G16B16A16_SFLOAT,
+        TexelFormat::Bc6h => Format::BC6H_UFLOAT_BLOCK,
     };
-    let (basic, type_size) = Basic::from_format(vulkan_format).expect("both formats are in the crate's table");
+    let (basic, type_size) = Basic::from_format(vulkan_format).expect("all formats are in the crate's table");
     let descriptor = sized(&Block::Basic(basic).to_vec(), SizeField::Counted);
     let metadata = key_values(&[("KTXorientation", "rd"), ("KTXwriter", WRITER)]);
     let descriptor_offset = Header::LENGTH + LevelIndex::LENGTH;
@@ -54,10 +65,10 @@ fn container(width: u32, height: u32, format: TexelFormat, texels: &[u8]) -> Vec
 
     let compressed = compress(texels);
     let level = compressed.as_deref().unwrap_or(texels);
-    // An uncompressed level starts at a multiple of its texel; both sizes are multiples of 4.
+    // An uncompressed level starts at a multiple of its texel or block; all sizes are multiples of 4.
     let level_offset = match compressed {
         Some(_) => metadata_end,
-        None => metadata_end.next_multiple_of(format.bytes_per_texel()),
+        None => metadata_end.next_multiple_of(format.unit_bytes()),
     };
     let header = Header {
         format: Some(vulkan_format),
@@ -146,6 +157,8 @@ mod tests {
     use ktx2::Reader;
     use ktx2::{ColorModel, ColorPrimaries, TransferFunction};
 
+    const ALL: [TexelFormat; 3] = [TexelFormat::Rgb9e5, TexelFormat::Rgba16f, TexelFormat::Bc6h];
+
     /// What a loader makes of the file: its header and the texels of its level, decompressed.
     fn load(file: &[u8]) -> (Header, Vec<u8>) {
         let reader = Reader::new(file).expect("a KTX2 file");
@@ -172,11 +185,12 @@ mod tests {
 
     #[test]
     fn the_header_is_that_of_a_two_dimensional_texture() {
-        for format in [TexelFormat::Rgb9e5, TexelFormat::Rgba16f] {
+        for format in ALL {
             let (header, texels) = load(&ktx2_bytes(&page(24, 20), format).bytes);
             let (expected, type_size) = match format {
                 TexelFormat::Rgb9e5 => (Format::E5B9G9R9_UFLOAT_PACK32, 4),
                 TexelFormat::Rgba16f => (Format::R16G16B16A16_SFLOAT, 2),
+                TexelFormat::Bc6h => (Format::BC6H_UFLOAT_BLOCK, 1),
             };
             assert_eq!((header.format, header.type_size), (Some(expected), type_size));
             assert_eq!((header.pixel_width, header.pixel_height, header.pixel_depth), (24, 20, 0));
@@ -199,6 +213,32 @@ mod tests {
         let writer = format!("{WRITER}\0");
         assert_eq!(metadata, [("KTXorientation", &b"rd\0"[..]), ("KTXwriter", writer.as_bytes())]);
         assert!(reader.header().index.kvd_byte_offset.is_multiple_of(4));
+    }
+
+    #[test]
+    fn blocks_are_described_as_such_and_fill_whole_ones() {
+        let file = ktx2_bytes(&page(9, 6), TexelFormat::Bc6h).bytes;
+        let reader = Reader::new(&file[..]).unwrap();
+        let basic = reader.basic_dfd().expect("a basic descriptor");
+        assert_eq!(basic.color_model, Some(ColorModel::BC6H));
+        assert_eq!(basic.transfer_function, Some(TransferFunction::Linear));
+        assert_eq!(basic.texel_block_dimensions.map(|length| length.get()), [4, 4, 1, 1]);
+        assert_eq!(basic.bytes_planes[0], 16);
+        // Unsigned floats, as the specification tells them from signed ones.
+        let sample = &basic.sample_information[0];
+        assert_eq!((sample.bit_length.get(), sample.lower, sample.upper), (128, 0, 1.0_f32.to_bits()));
+        let (header, texels) = load(&file);
+        assert_eq!((header.pixel_width, header.pixel_height, texels.len()), (12, 8, 12 * 8));
+        let row = page(5, 1);
+        let (header, _) = load(&ktx2_bytes(&row, TexelFormat::Bc6h).bytes);
+        assert_eq!((header.pixel_width, header.pixel_height), (8, 4));
+        let empty = Page { width: 0, height: 0, ..row };
+        let (header, texels) = load(&ktx2_bytes(&empty, TexelFormat::Bc6h).bytes);
+        assert_eq!((header.pixel_width, header.pixel_height, texels), (4, 4, vec![0; 16]));
+        let noise = noise(64 * 64);
+        let file = container(64, 64, TexelFormat::Bc6h, &noise);
+        let level = Reader::new(&file[..]).unwrap().levels().next().unwrap().data.as_ptr() as usize;
+        assert_eq!((level - file.as_ptr() as usize) % 16, 0);
     }
 
     #[test]
@@ -262,7 +302,7 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_counted_in_the_file_as_in_the_texels() {
-        for format in [TexelFormat::Rgb9e5, TexelFormat::Rgba16f] {
+        for format in ALL {
             let encoded = ktx2_bytes(&strange_page(), format);
             assert_eq!(encoded.clamped, texel_bytes(&strange_page(), format).clamped);
             assert_eq!(load(&encoded.bytes).1, texel_bytes(&strange_page(), format).bytes);

@@ -1,9 +1,13 @@
-//! A baked folder: the display maps, their previews, the measured layers if asked for, and last the manifest.
+//! A baked folder: the display maps, their previews, the measured layers if asked for, the meshes that were laid out
+//! anew, and last the manifest.
 
+use super::compression::{CompressionError, Losses};
 use super::safe_write::{Staged, make_folder};
-use super::{OutputError, OutputFormat, TexelFormat, exr, ktx2, png};
-use crate::artefact::{self, BakedLight, MANIFEST_FILE, MANIFEST_VERSION, Manifest};
-use crate::bake::{BakeWarning, Lightmap, Page};
+use super::{OutputError, OutputFormat, TexelFormat, exr, ktx2, overview, png, texel_bytes};
+use crate::artefact::{
+    self, BakedLight, MANIFEST_FILE, MANIFEST_VERSION, MESHES_FILE, Manifest, MeshLayout, MeshLayoutError,
+};
+use crate::bake::{BakeWarning, Lightmap, Page, Placement};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -19,11 +23,13 @@ pub struct WrittenLightmap {
     pub warnings: Vec<BakeWarning>,
     /// Texels that the display maps could not hold as they are.
     pub clamped: u64,
+    /// What the display maps lost to compression; `None` for formats without.
+    pub compression: Option<CompressionError>,
 }
 
 /// Writes a lightmap into the folder `dir`, which is made if it is missing: `lightmap_<page>.ktx2` to display,
-/// `lightmap_<page>.png` to look at, with [`OutputFormat::Exr`] `lightmap_<page>.exr` to measure with, and
-/// `kiln.ron`, which says where each object lies. `scene_name` is the caller's own word for the scene.
+/// `lightmap_<page>.png` to look at, `overview_<page>.png` to see how the page is used, with [`OutputFormat::Exr`] `lightmap_<page>.exr` to measure with,
+/// `meshes.kiln` if the bake laid meshes out anew, and `kiln.ron`, which says where each object lies. `scene_name` is the caller's own word for the scene.
 ///
 /// All files are complete on the disk before the first takes its place, and the manifest takes its place last: what
 /// fails before leaves the folder as it was.
@@ -34,29 +40,55 @@ pub fn write_lightmap(
     format: OutputFormat,
 ) -> Result<WrittenLightmap, OutputError> {
     check(lightmap, dir)?;
+    let meshes = meshes(lightmap, dir)?;
     make_folder(dir)?;
     let texel_format = format.texel_format();
     let mut staged = Vec::new();
     let mut clamped = 0;
     let mut clamped_in_exr = 0;
+    let mut losses = Losses::of(&lightmap.pages, texel_format);
     for (index, page) in lightmap.pages.iter().enumerate() {
-        let encoded = ktx2::ktx2_bytes(page, texel_format);
+        let encoded = texel_bytes(page, texel_format);
         clamped += encoded.clamped;
-        staged.push(Staged::write(&dir.join(page_file(index, "ktx2")), |file| file.write_all(&encoded.bytes))?);
+        if let Some(losses) = &mut losses {
+            losses.add(page, &encoded.bytes);
+        }
+        let map = ktx2::file_of(page, texel_format, encoded.bytes);
+        staged.push(Staged::write(&dir.join(page_file(index, "ktx2")), |file| file.write_all(&map))?);
         staged.push(Staged::write(&dir.join(page_file(index, "png")), |file| png::write_preview(page, file))?);
+        staged.push(Staged::write(&dir.join(overview_file(index)), |file| overview::write_overview(page, file))?);
         if matches!(format, OutputFormat::Exr) {
             clamped_in_exr += exr::count_clamped(page);
             staged.push(Staged::write(&dir.join(page_file(index, "exr")), |file| exr::write_page(page, file))?);
         }
     }
-    let manifest = manifest(lightmap, scene_name).to_ron();
+    if let Some(meshes) = meshes {
+        staged.push(Staged::write(&dir.join(MESHES_FILE), |file| file.write_all(&meshes))?);
+    }
+    let manifest = manifest(lightmap, scene_name, texel_format).to_ron();
     staged.push(Staged::write(&dir.join(MANIFEST_FILE), |file| file.write_all(manifest.as_bytes()))?);
     let files = staged.into_iter().map(Staged::place).collect::<Result<_, _>>()?;
-    Ok(WrittenLightmap { files, warnings: warnings(texel_format, clamped, clamped_in_exr), clamped })
+    let compression = losses.map(|losses| losses.error());
+    Ok(WrittenLightmap { files, warnings: warnings(texel_format, clamped, clamped_in_exr), clamped, compression })
+}
+
+fn overview_file(index: usize) -> String {
+    format!("overview_{index}.png")
 }
 
 fn page_file(index: usize, extension: &str) -> String {
     format!("lightmap_{index}.{extension}")
+}
+
+/// The file of the meshes that were laid out anew, if there are any.
+fn meshes(lightmap: &Lightmap, dir: &Path) -> Result<Option<Vec<u8>>, OutputError> {
+    if lightmap.meshes.is_empty() {
+        return Ok(None);
+    }
+    let layouts: Vec<MeshLayout> = lightmap.meshes.iter().map(MeshLayout::from).collect();
+    let malformed =
+        |reason: MeshLayoutError| OutputError::Malformed { path: dir.join(MESHES_FILE), reason: reason.to_string() };
+    MeshLayout::write_all(&layouts).map(Some).map_err(malformed)
 }
 
 fn warnings(format: TexelFormat, clamped: u64, clamped_in_exr: u64) -> Vec<BakeWarning> {
@@ -68,26 +100,40 @@ fn warnings(format: TexelFormat, clamped: u64, clamped_in_exr: u64) -> Vec<BakeW
         .collect()
 }
 
-fn manifest(lightmap: &Lightmap, scene_name: &str) -> Manifest {
+fn manifest(lightmap: &Lightmap, scene_name: &str, format: TexelFormat) -> Manifest {
     let page = |(index, page): (usize, &Page)| {
-        let (width, height) = ktx2::stored_size(page);
+        let (width, height) = ktx2::stored_size(page, format);
         artefact::Page { file: page_file(index, "ktx2"), width, height }
     };
-    let placements = lightmap.placements.iter().map(|placement| artefact::Placement {
-        id: placement.id.clone(),
-        page: placement.page,
-        uv_min: placement.uv_min,
-        uv_max: placement.uv_max,
-    });
+    let placement = |placement: &Placement| {
+        let page = &lightmap.pages[placement.page as usize];
+        let within = |uv| within_stored(uv, page, format);
+        artefact::Placement {
+            id: placement.id.clone(),
+            page: placement.page,
+            uv_min: within(placement.uv_min),
+            uv_max: within(placement.uv_max),
+            mesh: placement.mesh.and_then(|mesh| u32::try_from(mesh).ok()),
+        }
+    };
     Manifest {
         version: MANIFEST_VERSION,
         generator: concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION")).to_owned(),
         scene: scene_name.to_owned(),
         texel_unit: TEXEL_UNIT.to_owned(),
         pages: lightmap.pages.iter().enumerate().map(page).collect(),
-        placements: placements.collect(),
+        placements: lightmap.placements.iter().map(placement).collect(),
+        meshes: (!lightmap.meshes.is_empty()).then(|| MESHES_FILE.to_owned()),
         baked_lights: lightmap.baked_lights.iter().map(|id| BakedLight { id: id.clone() }).collect(),
     }
+}
+
+/// A place on a page as a place on the texture that stores it, which may be larger.
+fn within_stored(uv: [f32; 2], page: &Page, format: TexelFormat) -> [f32; 2] {
+    let stored = format.stored_size(page);
+    let share = |length: u32, stored: u32| f64::from(length) / f64::from(stored.max(1));
+    let [u, v] = uv.map(f64::from);
+    [(u * share(page.width, stored[0])) as f32, (v * share(page.height, stored[1])) as f32]
 }
 
 /// Refuses what no file could say.
@@ -100,20 +146,24 @@ fn check(lightmap: &Lightmap, dir: &Path) -> Result<(), OutputError> {
             return Err(OutputError::Malformed { path: dir.join(page_file(index, "ktx2")), reason });
         }
     }
-    match lightmap.placements.iter().find(|placement| placement.page as usize >= lightmap.pages.len()) {
-        Some(placement) => Err(OutputError::Malformed {
-            path: dir.join(MANIFEST_FILE),
-            reason: format!("\"{}\" lies on page {}, which is not there", placement.id, placement.page),
-        }),
-        None => Ok(()),
+    let malformed = |reason| Err(OutputError::Malformed { path: dir.join(MANIFEST_FILE), reason });
+    for placement in &lightmap.placements {
+        if placement.page as usize >= lightmap.pages.len() {
+            return malformed(format!("\"{}\" lies on page {}, which is not there", placement.id, placement.page));
+        }
+        if let Some(mesh) = placement.mesh.filter(|&mesh| mesh >= lightmap.meshes.len()) {
+            return malformed(format!("\"{}\" has mesh {mesh}, which is not there", placement.id));
+        }
     }
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_pages::{lightmap, names, page, strange_page};
+    use super::super::test_pages::{cut_quad, lightmap, names, page, strange_page};
     use super::*;
-    use crate::artefact::StableId;
+    use crate::artefact::{MeshHash, StableId};
+    use crate::bake::LaidOutMesh;
     use std::fs;
 
     #[test]
@@ -122,10 +172,21 @@ mod tests {
         let dir = folder.path().join("baked/room");
         let lightmap = lightmap(vec![page(8, 4), page(4, 16)]);
         let written = write_lightmap(&lightmap, "room.glb", &dir, OutputFormat::Rgba16f).unwrap();
-        let expected =
-            ["lightmap_0.ktx2", "lightmap_0.png", "lightmap_1.ktx2", "lightmap_1.png", "kiln.ron"].map(|n| dir.join(n));
-        assert_eq!(written, WrittenLightmap { files: expected.to_vec(), warnings: vec![], clamped: 0 });
-        assert_eq!(names(&dir).len(), 5);
+        let expected = [
+            "lightmap_0.ktx2",
+            "lightmap_0.png",
+            "overview_0.png",
+            "lightmap_1.ktx2",
+            "lightmap_1.png",
+            "overview_1.png",
+            "kiln.ron",
+        ]
+        .map(|n| dir.join(n));
+        assert_eq!(
+            written,
+            WrittenLightmap { files: expected.to_vec(), warnings: vec![], clamped: 0, compression: None }
+        );
+        assert_eq!(names(&dir).len(), 7);
 
         let manifest = Manifest::from_ron(&fs::read_to_string(dir.join(MANIFEST_FILE)).unwrap()).unwrap();
         assert_eq!(manifest.scene, "room.glb");
@@ -133,11 +194,69 @@ mod tests {
         assert!(manifest.generator.starts_with("bevy_kiln 0."), "{}", manifest.generator);
         assert_eq!(manifest.pages[1], artefact::Page { file: "lightmap_1.ktx2".into(), width: 4, height: 16 });
         assert_eq!(manifest.baked_lights, [BakedLight { id: StableId::new("lamp") }]);
-        let placement =
-            artefact::Placement { id: StableId::new("room/part 1"), page: 1, uv_min: [0.0, 0.25], uv_max: [0.5, 1.0] };
+        let placement = artefact::Placement {
+            id: StableId::new("room/part 1"),
+            page: 1,
+            uv_min: [0.0, 0.25],
+            uv_max: [0.5, 1.0],
+            mesh: None,
+        };
         assert_eq!(manifest.placements[1], placement);
         let map = fs::read(dir.join(&manifest.pages[1].file)).unwrap();
         assert_eq!(map, ktx2::ktx2_bytes(&lightmap.pages[1], TexelFormat::Rgba16f).bytes);
+    }
+
+    #[test]
+    fn compressed_maps_say_what_they_lost_and_where_objects_lie_on_them() {
+        let folder = temp_dir::TempDir::new().unwrap();
+        let lightmap = lightmap(vec![page(8, 4), page(6, 30)]);
+        let written = write_lightmap(&lightmap, "a", folder.path(), OutputFormat::Bc6h).unwrap();
+        let error = written.compression.unwrap();
+        assert!(error.rms > 0.0 && error.rms < 0.1 && error.worst < 0.3, "{error:?}");
+        let manifest = Manifest::from_ron(&fs::read_to_string(folder.path().join(MANIFEST_FILE)).unwrap()).unwrap();
+        assert_eq!(manifest.pages[1], artefact::Page { file: "lightmap_1.ktx2".into(), width: 8, height: 32 });
+        assert_eq!((manifest.placements[0].uv_min, manifest.placements[0].uv_max), ([0.0, 0.25], [0.5, 1.0]));
+        // The page is 6/8 and 30/32 of its texture.
+        assert_eq!((manifest.placements[1].uv_min, manifest.placements[1].uv_max), ([0.0, 0.234375], [0.375, 0.9375]));
+    }
+
+    #[test]
+    fn meshes_that_were_laid_out_anew_come_with_it() {
+        let folder = temp_dir::TempDir::new().unwrap();
+        let mut lightmap = lightmap(vec![page(8, 4), page(4, 16)]);
+        lightmap.meshes = vec![LaidOutMesh { hash: MeshHash::of([], []), ..cut_quad() }, cut_quad()];
+        lightmap.placements[1].mesh = Some(1);
+        let written = write_lightmap(&lightmap, "a", folder.path(), OutputFormat::Rgb9e5).unwrap();
+        let last: Vec<_> = written.files.iter().rev().take(2).map(|file| file.file_name().unwrap()).collect();
+        assert_eq!(last, [MANIFEST_FILE, MESHES_FILE]);
+        let manifest = Manifest::from_ron(&fs::read_to_string(folder.path().join(MANIFEST_FILE)).unwrap()).unwrap();
+        assert_eq!(manifest.meshes.as_deref(), Some(MESHES_FILE));
+        assert_eq!([manifest.placements[0].mesh, manifest.placements[1].mesh], [None, Some(1)]);
+        let layouts = MeshLayout::read_all(&fs::read(folder.path().join(MESHES_FILE)).unwrap()).unwrap();
+        assert_eq!(layouts.len(), 2);
+        assert_eq!(layouts[1].vertices, [0, 1, 2, 2, 1, 3]);
+        assert_eq!(layouts[1].uv1[4], [1.0, 0.5]);
+        assert_eq!((layouts[1].hash, layouts[1].indices.len()), (cut_quad().hash, 6));
+    }
+
+    #[test]
+    fn meshes_that_contradict_themselves_are_not_written() {
+        let folder = temp_dir::TempDir::new().unwrap();
+        let dir = folder.path().join("baked");
+        let mut missing = lightmap(vec![page(8, 4)]);
+        missing.placements[0].mesh = Some(0);
+        let mut short = missing.clone();
+        short.meshes = vec![cut_quad()];
+        short.meshes[0].uv1.pop();
+        for (lightmap, file, reason) in [
+            (missing, MANIFEST_FILE, "mesh 0, which is not there"),
+            (short, MESHES_FILE, "5 coordinates for 6 vertices"),
+        ] {
+            let error = write_lightmap(&lightmap, "a", &dir, OutputFormat::Rgb9e5).unwrap_err();
+            assert!(matches!(&error, OutputError::Malformed { path, .. } if *path == dir.join(file)), "{error}");
+            assert!(error.to_string().contains(reason), "{error}");
+            assert!(!dir.exists());
+        }
     }
 
     #[test]
@@ -146,7 +265,10 @@ mod tests {
         let lightmap = lightmap(vec![page(8, 4)]);
         write_lightmap(&lightmap, "a", folder.path(), OutputFormat::Exr).unwrap();
         write_lightmap(&lightmap, "a", other.path(), OutputFormat::Rgb9e5).unwrap();
-        assert_eq!(names(folder.path()), ["kiln.ron", "lightmap_0.exr", "lightmap_0.ktx2", "lightmap_0.png"]);
+        assert_eq!(
+            names(folder.path()),
+            ["kiln.ron", "lightmap_0.exr", "lightmap_0.ktx2", "lightmap_0.png", "overview_0.png"]
+        );
         for name in names(other.path()) {
             assert_eq!(fs::read(folder.path().join(&name)).unwrap(), fs::read(other.path().join(&name)).unwrap());
         }

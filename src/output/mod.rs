@@ -4,11 +4,14 @@
 //! It owns the encodings and that nothing which was on disk is lost. It neither changes a value, save to clamp it
 //! to what a format holds, nor knows how a value came about.
 
+mod bc6h;
+mod compression;
 mod error;
 mod exr;
 mod format;
 mod ktx2;
 mod lightmap;
+mod overview;
 mod picture;
 mod png;
 mod rgb9e5;
@@ -18,6 +21,7 @@ mod test_pages;
 mod texels;
 mod tone;
 
+pub use compression::CompressionError;
 pub use error::OutputError;
 pub use format::{OutputFormat, TexelFormat, UnknownFormat};
 pub use ktx2::ktx2_bytes;

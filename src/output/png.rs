@@ -63,7 +63,8 @@ fn to_srgb(linear: f32) -> u8 {
     (encoded * 255.0 + 0.5) as u8
 }
 
-fn write_rgb(width: u32, height: u32, pixels: Vec<u8>, to: impl Write) -> io::Result<()> {
+/// Eight bits of red, green and blue, row by row.
+pub(super) fn write_rgb(width: u32, height: u32, pixels: Vec<u8>, to: impl Write) -> io::Result<()> {
     PngEncoder::new(to).write_image(&pixels, width, height, ExtendedColorType::Rgb8).map_err(|error| match error {
         ImageError::IoError(error) => error,
         other => io::Error::other(other.to_string()),

@@ -1,8 +1,8 @@
 //! What the tests of the encoders share: pages, and what lies in a folder.
 
-use crate::artefact::StableId;
-use crate::bake::{BakeReport, Lightmap, Page, Placement, TexelState};
-use glam::Vec3;
+use crate::artefact::{MeshHash, StableId};
+use crate::bake::{BakeReport, LaidOutMesh, Lightmap, Page, Placement, TexelState};
+use glam::{Vec2, Vec3};
 use std::fs;
 use std::path::Path;
 
@@ -22,6 +22,7 @@ pub(super) fn page(width: u32, height: u32) -> Page {
         stderr: texels.clone().map(|index| texel(index) * 0.02).collect(),
         state: vec![TexelState::Measured; (width * height) as usize],
         chart: vec![1; (width * height) as usize],
+        ..Page::default()
     }
 }
 
@@ -52,6 +53,20 @@ pub(super) fn lightmap(pages: Vec<Page>) -> Lightmap {
         .collect();
     let baked_lights = vec![StableId::new("lamp")];
     Lightmap { pages, placements, meshes: Vec::new(), baked_lights, report: BakeReport::default() }
+}
+
+/// A quad, cut along its diagonal.
+pub(super) fn cut_quad() -> LaidOutMesh {
+    let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+    LaidOutMesh {
+        source: 0,
+        hash: MeshHash::of(positions, [[0, 1, 2], [2, 1, 3]]),
+        vertices: vec![0, 1, 2, 2, 1, 3],
+        uv1: [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5], [0.5, 1.0], [1.0, 0.5], [1.0, 1.0]].map(Vec2::from).to_vec(),
+        indices: vec![0, 1, 2, 3, 4, 5],
+        charts: 2,
+        ..LaidOutMesh::default()
+    }
 }
 
 /// The names of what lies in a folder, sorted.

@@ -4,7 +4,7 @@
 //! what is too large becomes the largest, and every texel so changed is counted.
 
 use super::format::TexelFormat;
-use super::rgb9e5;
+use super::{bc6h, rgb9e5};
 use crate::bake::Page;
 use glam::Vec3;
 use half::f16;
@@ -19,32 +19,58 @@ pub struct Encoded {
 }
 
 /// The texels of a page as a texture's level 0: row by row, row 0 at v = 0, little-endian, without padding;
-/// `width × height × `[`bytes_per_texel`](TexelFormat::bytes_per_texel) bytes. Texels that the page's layers do not
-/// reach are black.
+/// [`bytes_per_texel`](TexelFormat::bytes_per_texel) bytes for each texel of the
+/// [`stored_size`](TexelFormat::stored_size). Texels that the page's layers do not reach are black; those that fill
+/// up the blocks of a compressed format repeat the last ones.
 pub fn texel_bytes(page: &Page, format: TexelFormat) -> Encoded {
-    let count = page.width as usize * page.height as usize;
-    let mut encoded = Encoded { bytes: Vec::with_capacity(count * format.bytes_per_texel()), clamped: 0 };
-    for index in 0..count {
-        let radiance = page.radiance.get(index).copied().unwrap_or(Vec3::ZERO);
-        let coverage = page.coverage.get(index).copied().unwrap_or(0.0);
-        let colour = radiance.to_array().map(|channel| clamp(channel, format.limit()));
-        let alpha = clamp(coverage, 1.0);
-        let fits = match format {
-            TexelFormat::Rgb9e5 => {
-                encoded.bytes.extend(rgb9e5::encode(colour).to_le_bytes());
-                colour == radiance.to_array()
-            }
-            TexelFormat::Rgba16f => {
-                let [red, green, blue] = colour;
-                for channel in [red, green, blue, alpha] {
-                    encoded.bytes.extend(f16::from_f32(channel).to_le_bytes());
-                }
-                colour == radiance.to_array() && alpha == coverage
-            }
+    let colours = stored_colours(page, format);
+    let bytes = match format {
+        TexelFormat::Rgb9e5 => colours.flat_map(|colour| rgb9e5::encode(colour).to_le_bytes()).collect(),
+        TexelFormat::Rgba16f => {
+            let texels = colours.zip(coverages(page)).map(|([red, green, blue], coverage)| {
+                [red, green, blue, clamp(coverage, 1.0)].map(|value| f16::from_f32(value).to_le_bytes())
+            });
+            texels.collect::<Vec<_>>().into_flattened().into_flattened()
+        }
+        TexelFormat::Bc6h => {
+            let [width, height] = format.stored_size(page);
+            let colours: Vec<[f32; 3]> = colours.collect();
+            let at =
+                |x: u32, y: u32| y.min(page.height - 1) as usize * page.width as usize + x.min(page.width - 1) as usize;
+            let filled: Vec<[f32; 3]> =
+                (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| colours[at(x, y)]).collect();
+            bc6h::encode(&filled, width)
+        }
+    };
+    Encoded { bytes, clamped: clamped(page, format) }
+}
+
+/// Texels that the format cannot hold as they are.
+fn clamped(page: &Page, format: TexelFormat) -> u64 {
+    let texels = radiances(page).zip(stored_colours(page, format)).zip(coverages(page));
+    let changed = texels.filter(|((radiance, colour), coverage)| {
+        let coverage_fits = match format {
+            TexelFormat::Rgb9e5 | TexelFormat::Bc6h => true,
+            TexelFormat::Rgba16f => clamp(*coverage, 1.0) == *coverage,
         };
-        encoded.clamped += u64::from(!fits);
-    }
-    encoded
+        *colour != radiance.to_array() || !coverage_fits
+    });
+    changed.count() as u64
+}
+
+/// The colours of a page as the format can hold them, before it rounds them.
+pub(super) fn stored_colours(page: &Page, format: TexelFormat) -> impl Iterator<Item = [f32; 3]> {
+    radiances(page).map(move |radiance| radiance.to_array().map(|channel| clamp(channel, format.limit())))
+}
+
+/// The radiance of every texel of a page.
+fn radiances(page: &Page) -> impl Iterator<Item = Vec3> {
+    let count = page.width as usize * page.height as usize;
+    (0..count).map(|index| page.radiance.get(index).copied().unwrap_or(Vec3::ZERO))
+}
+
+fn coverages(page: &Page) -> impl Iterator<Item = f32> {
+    (0..).map(|index: usize| page.coverage.get(index).copied().unwrap_or(0.0))
 }
 
 /// The nearest value in [0, limit]; zero for what is not a number.
@@ -108,7 +134,7 @@ mod tests {
 
     #[test]
     fn the_limits_themselves_fit() {
-        for format in [TexelFormat::Rgb9e5, TexelFormat::Rgba16f] {
+        for format in [TexelFormat::Rgb9e5, TexelFormat::Rgba16f, TexelFormat::Bc6h] {
             let mut page = page(2, 2);
             page.radiance.fill(Vec3::splat(format.limit()));
             page.radiance[3] = Vec3::splat(-0.0);
@@ -116,6 +142,23 @@ mod tests {
             page.radiance[2].z = format.limit().next_up();
             assert_eq!(texel_bytes(&page, format).clamped, 1);
         }
+    }
+
+    #[test]
+    fn blocks_are_filled_up_with_the_last_row_and_column() {
+        let mut page = page(5, 3);
+        for (index, colour) in page.radiance.iter_mut().enumerate() {
+            *colour = Vec3::splat(if index % 5 == 4 { 8.0 } else { 1.0 });
+        }
+        let encoded = texel_bytes(&page, TexelFormat::Bc6h);
+        assert_eq!(TexelFormat::Bc6h.stored_size(&page), [8, 4]);
+        assert_eq!(encoded.bytes.len(), 8 * 4);
+        for (index, colour) in bc6h::decode(&encoded.bytes, 8).iter().enumerate() {
+            let wanted = if index % 8 >= 4 { 8.0 } else { 1.0 };
+            assert!((colour[0] - wanted).abs() < 0.01 * wanted, "{index}: {colour:?}");
+        }
+        let empty = texel_bytes(&Page { width: 0, height: 0, ..page }, TexelFormat::Bc6h);
+        assert_eq!(empty, Encoded { bytes: vec![], clamped: 0 });
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Triangle meshes and their placed instances.
 
-use crate::artefact::StableId;
+use crate::artefact::{MeshHash, StableId};
 use glam::{Affine3A, Vec2, Vec3, Vec4};
 
 /// How corners make triangles.
@@ -80,6 +80,11 @@ impl Mesh {
             Topology::TriangleStrip => [1, 0, 2].map(|corner| self.vertex(triangle + corner)),
         })
     }
+
+    /// What its shape is known by when a baked layout meets it again.
+    pub fn hash(&self) -> MeshHash {
+        MeshHash::of(self.positions.iter().map(Vec3::to_array), self.triangles())
+    }
 }
 
 /// A lightmap that an instance asks for.
@@ -132,5 +137,22 @@ mod tests {
                 assert!((b - a).cross(c - a).z > 0.0);
             }
         }
+    }
+
+    #[test]
+    fn the_hash_is_of_the_shape_alone() {
+        let list = quad(Topology::TriangleList, Indices::U16(vec![0, 1, 2, 2, 1, 3]));
+        let wide = Mesh {
+            indices: Indices::U32(vec![0, 1, 2, 2, 1, 3]),
+            uv1: Some(vec![Vec2::ZERO; 4]),
+            name: "other".into(),
+            ..list.clone()
+        };
+        assert_eq!(list.hash(), wide.hash());
+        assert_eq!(list.hash(), quad(Topology::TriangleStrip, Indices::None).hash());
+        let turned = quad(Topology::TriangleList, Indices::U16(vec![0, 1, 2, 2, 3, 1]));
+        assert_ne!(list.hash(), turned.hash());
+        let moved = Mesh { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE], ..list.clone() };
+        assert_ne!(list.hash(), moved.hash());
     }
 }

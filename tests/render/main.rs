@@ -10,6 +10,7 @@ mod mask;
 mod parity;
 mod picture;
 mod renderer;
+mod worn;
 
 /// Ends a test that this machine cannot run.
 fn skip(reason: &str) {

@@ -2,7 +2,7 @@
 
 use crate::skip;
 use bevy::app::PluginsState;
-use bevy::asset::RenderAssetUsages;
+use bevy::asset::{RenderAssetUsages, UnapprovedPathMode};
 use bevy::camera::{Exposure, Hdr, RenderTarget};
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
 use bevy::log::LogPlugin;
@@ -40,6 +40,8 @@ pub fn app() -> Option<App> {
         let engine = DefaultPlugins
             .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
             .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
+            // The tests' folders lie elsewhere.
+            .set(AssetPlugin { unapproved_path_mode: UnapprovedPathMode::Allow, ..default() })
             .set(LogPlugin { filter: "error".to_owned(), ..default() })
             .disable::<WinitPlugin>()
             .disable::<PipelinedRenderingPlugin>();

@@ -3,6 +3,7 @@
 use super::charts::UnwrapMethod;
 use super::pack::{Boxed, Packed};
 use super::surface::Surface;
+use crate::artefact::{MeshHash, MeshLayout};
 use crate::scene::{Indices, Mesh, Topology};
 use glam::Vec2;
 
@@ -11,6 +12,8 @@ use glam::Vec2;
 pub struct LaidOutMesh {
     /// Index into [`Scene::meshes`](crate::scene::Scene::meshes) of the scene that was baked.
     pub source: usize,
+    /// What that mesh is known by.
+    pub hash: MeshHash,
     /// Per vertex: the vertex of the source that it copies. Ascending, but for triangles without area.
     pub vertices: Vec<u32>,
     /// Per vertex: lightmap coordinates in the unit square; v grows downwards as in glTF.
@@ -21,6 +24,17 @@ pub struct LaidOutMesh {
     pub charts: u32,
     /// How they were made.
     pub method: UnwrapMethod,
+}
+
+impl From<&LaidOutMesh> for MeshLayout {
+    fn from(mesh: &LaidOutMesh) -> Self {
+        Self {
+            hash: mesh.hash,
+            vertices: mesh.vertices.clone(),
+            uv1: mesh.uv1.iter().map(Vec2::to_array).collect(),
+            indices: mesh.indices.clone(),
+        }
+    }
 }
 
 impl LaidOutMesh {
@@ -41,8 +55,12 @@ impl LaidOutMesh {
             }
         }
         corners.sort_unstable();
-        let mut mesh =
-            Self { indices: vec![u32::MAX; 3 * triangles.len()], charts: charts.len() as u32, ..Self::default() };
+        let mut mesh = Self {
+            hash: source.hash(),
+            indices: vec![u32::MAX; 3 * triangles.len()],
+            charts: charts.len() as u32,
+            ..Self::default()
+        };
         let mut last = None;
         for corner in corners {
             if last != Some((corner.vertex, corner.place)) {

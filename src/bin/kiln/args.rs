@@ -147,8 +147,8 @@ pub(crate) struct BakeArgs {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) layout: LayoutArgs,
-    /// How texels are stored: rgb9e5, rgba16f, or exr (rgb9e5 and f32 EXR besides)
-    #[arg(long, value_name = "rgb9e5|rgba16f|exr", default_value_t)]
+    /// How texels are stored: rgb9e5, rgba16f, bc6h (compressed, a quarter of rgb9e5), or exr (rgb9e5 and f32 EXR besides)
+    #[arg(long, value_name = "rgb9e5|rgba16f|bc6h|exr", default_value_t)]
     pub(crate) format: OutputFormat,
     /// End standard output with one JSON object
     #[arg(long)]

@@ -42,6 +42,10 @@ pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> 
     if report.energy_balance.is_none() {
         talk.say("  energy balance: none (light escapes or is cut, or not all surfaces are diffuse)");
     }
+    if let Some(error) = written.compression {
+        let (format, [rms, worst]) = (args.format, [error.rms, error.worst].map(|error| 100.0 * error));
+        talk.say(format_args!("  {format}: rms error {rms:.3} %, worst texel {worst:.3} %"));
+    }
     talk.say(format_args!("wrote {} files into {}", written.files.len(), args.output.display()));
     if args.json {
         Talk::Out.say(summary(report, &written, &warnings));
@@ -65,6 +69,7 @@ fn summary(report: &BakeReport, written: &WrittenLightmap, warnings: &[String]) 
             "off": report.forced.off.iter().map(Effect::name).collect::<Vec<_>>(),
         },
         "clamped": written.clamped,
+        "compression": written.compression.map(|error| json!({ "rms": error.rms, "worst": error.worst })),
         "warnings": warnings,
         "files": written.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>(),
     })

@@ -1,10 +1,12 @@
 //! A finished bake onto its entities, and off again. Runs in `PreUpdate`, see [`attach`].
 
 use super::events::LightmapFormat;
-use crate::artefact::StableId;
+use crate::artefact::{MeshLayout, StableId};
 use crate::bake::{self, BakeWarning, Placement};
 use crate::output::{TexelFormat, texel_bytes};
-use crate::plugin::display::{MutedLight, attach, attached, detach, lightmap_sampler, mute_light, unmute_light};
+use crate::plugin::display::{
+    MutedLight, SharedLayout, Shown, attach, attached, detach, lightmap_sampler, mute_light, unmute_light,
+};
 use bevy::asset::RenderAssetUsages;
 use bevy::ecs::entity::EntityHashMap;
 use bevy::pbr::Lightmap;
@@ -29,10 +31,10 @@ pub(super) struct Written {
 
 /// What is shown, and what was there before.
 #[derive(Resource, Default)]
-struct Shown {
+struct OnShow {
     pages: Vec<Handle<Image>>,
-    /// The lightmap that an entity had before its first bake.
-    before: EntityHashMap<Option<Lightmap>>,
+    /// What an entity showed before its first bake.
+    before: EntityHashMap<Option<Shown>>,
     /// The lights that were muted for it.
     lights: Vec<Entity>,
     /// `GlobalAmbientLight::affects_lightmapped_meshes` before it was baked.
@@ -41,7 +43,7 @@ struct Shown {
 
 /// Puts a bake on its entities and mutes the lights that it holds.
 pub(super) fn write_back(world: &mut World, finished: &Finished) -> Written {
-    let mut shown = world.remove_resource::<Shown>().unwrap_or_default();
+    let mut shown = world.remove_resource::<OnShow>().unwrap_or_default();
     let mut clamped = 0;
     let images = finished.lightmap.pages.iter().map(|page| image(page, finished.format, &mut clamped));
     let images: Vec<Image> = images.collect();
@@ -59,7 +61,9 @@ pub(super) fn write_back(world: &mut World, finished: &Finished) -> Written {
         shown.pages = images.into_iter().map(|image| assets.add(image)).collect();
     }
     take_off_the_rest(world, &mut shown, &targets);
-    let mut written = put_on(world, &mut shown, &targets);
+    let layouts: Vec<SharedLayout> =
+        finished.lightmap.meshes.iter().map(|mesh| SharedLayout::from(MeshLayout::from(mesh))).collect();
+    let mut written = put_on(world, &mut shown, &targets, &layouts);
     if clamped > 0 {
         let format = texel_format(finished.format);
         let warning = BakeWarning::Clamped { texels: clamped, format: format.name(), limit: format.limit() };
@@ -72,7 +76,7 @@ pub(super) fn write_back(world: &mut World, finished: &Finished) -> Written {
 
 /// Takes everything off again that [`write_back`] has put on.
 pub(super) fn clear(world: &mut World) {
-    let Some(shown) = world.remove_resource::<Shown>() else { return };
+    let Some(shown) = world.remove_resource::<OnShow>() else { return };
     for (entity, before) in shown.before {
         restore(world, entity, before);
     }
@@ -102,7 +106,7 @@ fn image(page: &bake::Page, format: LightmapFormat, clamped: &mut u64) -> Image 
 
 /// Whether the textures of the last bake can take the new texels, which then show without a frame in between:
 /// same sizes and format, and no entity moves to another page.
-fn fits_in_place(world: &World, shown: &Shown, images: &[Image], targets: &[(Entity, &Placement)]) -> bool {
+fn fits_in_place(world: &World, shown: &OnShow, images: &[Image], targets: &[(Entity, &Placement)]) -> bool {
     let Some(assets) = world.get_resource::<Assets<Image>>() else { return false };
     let same_textures = shown.pages.len() == images.len()
         && shown.pages.iter().zip(images).all(|(page, new)| {
@@ -114,7 +118,7 @@ fn fits_in_place(world: &World, shown: &Shown, images: &[Image], targets: &[(Ent
     same_textures
         && targets.iter().all(|&(entity, placement)| {
             let page = &shown.pages[placement.page as usize];
-            attached(world, entity).is_none_or(|lightmap| lightmap.image == *page)
+            attached(world, entity).is_none_or(|before| before.lightmap.image == *page)
         })
 }
 
@@ -128,7 +132,7 @@ fn overwrite(world: &mut World, pages: &[Handle<Image>], images: Vec<Image>) {
 }
 
 /// Gives entities that are no longer in the bake what they had before it.
-fn take_off_the_rest(world: &mut World, shown: &mut Shown, targets: &[(Entity, &Placement)]) {
+fn take_off_the_rest(world: &mut World, shown: &mut OnShow, targets: &[(Entity, &Placement)]) {
     let kept: EntityHashMap<()> = targets.iter().map(|&(entity, _)| (entity, ())).collect();
     let gone: Vec<Entity> = shown.before.keys().copied().filter(|entity| !kept.contains_key(entity)).collect();
     for entity in gone {
@@ -137,7 +141,12 @@ fn take_off_the_rest(world: &mut World, shown: &mut Shown, targets: &[(Entity, &
     }
 }
 
-fn put_on(world: &mut World, shown: &mut Shown, targets: &[(Entity, &Placement)]) -> Written {
+fn put_on(
+    world: &mut World,
+    shown: &mut OnShow,
+    targets: &[(Entity, &Placement)],
+    layouts: &[SharedLayout],
+) -> Written {
     let mut written = Written::default();
     for &(entity, placement) in targets {
         let lightmap = Lightmap {
@@ -145,13 +154,15 @@ fn put_on(world: &mut World, shown: &mut Shown, targets: &[(Entity, &Placement)]
             uv_rect: Rect { min: placement.uv_min.into(), max: placement.uv_max.into() },
             bicubic_sampling: false,
         };
+        let layout = placement.mesh.and_then(|mesh| layouts.get(mesh)).cloned();
         let before = attached(world, entity);
-        let is_there = before.as_ref().is_some_and(|before| before.image == lightmap.image);
+        let is_there =
+            before.as_ref().is_some_and(|before| before.lightmap.image == lightmap.image && before.layout == layout);
         if is_there && world.get::<Lightmap>(entity).is_some() {
             if let Some(mut shown) = world.get_mut::<Lightmap>(entity) {
                 shown.uv_rect = lightmap.uv_rect;
             }
-        } else if let Err(why) = attach(world, entity, lightmap) {
+        } else if let Err(why) = attach(world, entity, Shown { lightmap, layout }) {
             written.warnings.push(format!("\"{}\" {why}, so it does not show its lightmap", placement.id));
             continue;
         }
@@ -161,7 +172,7 @@ fn put_on(world: &mut World, shown: &mut Shown, targets: &[(Entity, &Placement)]
     written
 }
 
-fn mute(world: &mut World, shown: &mut Shown, finished: &Finished) {
+fn mute(world: &mut World, shown: &mut OnShow, finished: &Finished) {
     unmute(world, &std::mem::take(&mut shown.lights));
     let baked = finished.lightmap.baked_lights.iter().filter_map(|id| finished.entities.get(id).copied());
     for light in baked {
@@ -188,7 +199,7 @@ fn unmute(world: &mut World, lights: &[Entity]) {
     }
 }
 
-fn restore(world: &mut World, entity: Entity, before: Option<Lightmap>) {
+fn restore(world: &mut World, entity: Entity, before: Option<Shown>) {
     let Some(before) = before else { return detach(world, entity) };
     // What it had before was on it, so it can only fail where the entity is gone or was remade since.
     let _ = attach(world, entity, before);
@@ -197,5 +208,121 @@ fn restore(world: &mut World, entity: Entity, before: Option<Lightmap>) {
 fn restore_ambient(world: &mut World, flag: Option<bool>) {
     if let (Some(flag), Some(mut ambient)) = (flag, world.get_resource_mut::<GlobalAmbientLight>()) {
         ambient.affects_lightmapped_meshes = flag;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::artefact::MeshHash;
+    use crate::bake::{BakeReport, LaidOutMesh, Page};
+    use bevy::mesh::PrimitiveTopology;
+
+    const TRIANGLE: [[f32; 3]; 3] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+
+    /// A world with one triangle without UV1.
+    fn world() -> (World, Entity, Handle<Mesh>) {
+        let mut world = World::new();
+        world.insert_resource(Assets::<Image>::default());
+        world.insert_resource(Assets::<Mesh>::default());
+        world.insert_resource(Assets::<StandardMaterial>::default());
+        let mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, TRIANGLE.to_vec());
+        let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+        let material = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial::default());
+        let entity = world.spawn((Mesh3d(mesh.clone()), MeshMaterial3d(material))).id();
+        (world, entity, mesh)
+    }
+
+    /// A bake of it whose UV1 starts at `uv`.
+    fn bake_of(positions: [[f32; 3]; 3], uv: f32, radiance: f32) -> bake::Lightmap {
+        let page = Page {
+            width: 4,
+            height: 4,
+            radiance: vec![Vec3::splat(radiance); 16],
+            coverage: vec![1.0; 16],
+            raw: vec![Vec3::splat(radiance); 16],
+            stderr: vec![Vec3::ZERO; 16],
+            ..Page::default()
+        };
+        let mesh = LaidOutMesh {
+            source: 0,
+            hash: MeshHash::of(positions, [[0, 1, 2]]),
+            vertices: vec![0, 1, 2],
+            uv1: vec![Vec2::splat(uv), Vec2::X, Vec2::Y],
+            indices: vec![0, 1, 2],
+            charts: 1,
+            ..LaidOutMesh::default()
+        };
+        let placement =
+            Placement { id: StableId::new("a"), page: 0, uv_min: [0.0; 2], uv_max: [1.0; 2], mesh: Some(0) };
+        bake::Lightmap {
+            pages: vec![page],
+            placements: vec![placement],
+            meshes: vec![mesh],
+            baked_lights: Vec::new(),
+            report: BakeReport::default(),
+        }
+    }
+
+    fn show(world: &mut World, entity: Entity, lightmap: &bake::Lightmap) -> Written {
+        let entities = BTreeMap::from([(StableId::new("a"), entity)]);
+        let format = LightmapFormat::Rgba16f;
+        write_back(world, &Finished { lightmap, entities: &entities, ambient_baked: false, format })
+    }
+
+    #[test]
+    fn a_mesh_without_uv1_wears_its_layout_until_it_is_cleared() {
+        let (mut world, entity, own) = world();
+        let mesh_of = |world: &World| world.get::<Mesh3d>(entity).unwrap().0.clone();
+        let written = show(&mut world, entity, &bake_of(TRIANGLE, 0.0, 1.0));
+        assert_eq!((written.entities, written.warnings), (1, vec![]));
+        let first = mesh_of(&world);
+        assert!(first != own && world.get::<Lightmap>(entity).is_some());
+        assert!(world.resource::<Assets<Mesh>>().get(&first).unwrap().contains_attribute(Mesh::ATTRIBUTE_UV_1));
+
+        // The same layout: the texels change in place and nothing else does.
+        show(&mut world, entity, &bake_of(TRIANGLE, 0.0, 2.0));
+        assert_eq!(mesh_of(&world), first);
+        assert!(world.get::<Lightmap>(entity).is_some());
+
+        // Another layout: another mesh of the same own one, and a few frames without a lightmap.
+        show(&mut world, entity, &bake_of(TRIANGLE, 0.5, 2.0));
+        let second = mesh_of(&world);
+        assert!(second != own && second != first && world.get::<Lightmap>(entity).is_none());
+
+        clear(&mut world);
+        assert_eq!(mesh_of(&world), own);
+        assert!(attached(&world, entity).is_none());
+        assert_eq!(world.resource::<Assets<Mesh>>().get(&own).unwrap().attributes().count(), 1);
+    }
+
+    #[test]
+    fn a_mesh_that_changed_while_it_was_baked_is_left_alone() {
+        let (mut world, entity, own) = world();
+        let written = show(&mut world, entity, &bake_of([[0.5; 3]; 3], 0.0, 1.0));
+        assert_eq!(written.entities, 0);
+        let sentence =
+            "\"a\" has another mesh than the one that was baked (bake again), so it does not show its lightmap";
+        assert_eq!(written.warnings, [sentence]);
+        assert_eq!(world.get::<Mesh3d>(entity).unwrap().0, own);
+        assert!(attached(&world, entity).is_none());
+    }
+
+    #[test]
+    fn what_was_shown_before_the_first_bake_comes_back_with_its_mesh() {
+        let (mut world, entity, own) = world();
+        let layout = MeshLayout::from(&bake_of(TRIANGLE, 0.25, 1.0).meshes[0]);
+        let lightmap =
+            Lightmap { image: Handle::default(), uv_rect: Rect::new(0.0, 0.0, 1.0, 1.0), bicubic_sampling: true };
+        attach(&mut world, entity, Shown { lightmap, layout: Some(layout.into()) }).unwrap();
+        let before = world.get::<Mesh3d>(entity).unwrap().0.clone();
+        assert_ne!(before, own);
+        show(&mut world, entity, &bake_of(TRIANGLE, 0.5, 1.0));
+        let baked = world.get::<Mesh3d>(entity).unwrap().0.clone();
+        assert!(baked != own && baked != before);
+        clear(&mut world);
+        assert_eq!(world.get::<Mesh3d>(entity).unwrap().0, before);
+        assert!(attached(&world, entity).is_some_and(|shown| shown.lightmap.bicubic_sampling));
     }
 }

@@ -1,6 +1,6 @@
 //! Puts a loaded bake on the entities below a scene's root, as they come.
 
-use super::attach::{attach, detach};
+use super::attach::{Shown, attach, detach};
 use super::mute::{MutedLight, mute_light, unmute_light};
 use super::{BakedFolder, stable_id};
 use crate::artefact::StableId;
@@ -37,7 +37,7 @@ impl AppliedLightmaps {
 
 /// One thing that a folder says about an entity.
 enum Job {
-    Attach(Lightmap),
+    Attach(Shown),
     Mute,
 }
 
@@ -57,8 +57,8 @@ pub(crate) fn apply_baked_lightmaps(world: &mut World) {
         applied.folder = Some(folder.id());
         for (entity, job) in jobs {
             match job {
-                Job::Attach(lightmap) => {
-                    if let Err(why) = attach(world, entity, lightmap) {
+                Job::Attach(shown) => {
+                    if let Err(why) = attach(world, entity, shown) {
                         warn!("\"{}\" {why}, so it does not show its lightmap", stable_id(world, entity));
                     }
                 }
@@ -108,7 +108,7 @@ fn find_jobs(
     if applied.done.len() >= folder.manifest.placements.len() + folder.manifest.baked_lights.len() {
         return Vec::new();
     }
-    let placements: HashMap<&StableId, Lightmap> = folder
+    let placements: HashMap<&StableId, Shown> = folder
         .manifest
         .placements
         .iter()
@@ -118,7 +118,8 @@ fn find_jobs(
                 uv_rect: Rect { min: placement.uv_min.into(), max: placement.uv_max.into() },
                 bicubic_sampling: false,
             };
-            (&placement.id, lightmap)
+            let layout = placement.mesh.and_then(|mesh| folder.meshes.get(mesh as usize)).cloned();
+            (&placement.id, Shown { lightmap, layout })
         })
         .collect();
     let lights: HashSet<&StableId> = folder.manifest.baked_lights.iter().map(|light| &light.id).collect();
@@ -131,8 +132,8 @@ fn find_jobs(
         }
         if let Some(mesh) = world.get::<Mesh3d>(entity) {
             let is_loaded = world.get_resource::<Assets<Mesh>>().is_some_and(|meshes| meshes.contains(&mesh.0));
-            if let Some(lightmap) = placements.get(&stable_id(world, entity)).filter(|_| is_loaded) {
-                jobs.push((entity, Job::Attach(lightmap.clone())));
+            if let Some(shown) = placements.get(&stable_id(world, entity)).filter(|_| is_loaded) {
+                jobs.push((entity, Job::Attach(shown.clone())));
             }
         }
         if is_light(world, entity) && lights.contains(&stable_id(world, entity)) {

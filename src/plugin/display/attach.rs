@@ -5,12 +5,23 @@
 //! one is taken off for a few frames first. All of it must happen before `PostUpdate`, where Bevy looks for
 //! changed materials.
 
+use super::relay::CannotLayOut;
+use super::wear::{self, SharedLayout};
 use bevy::mesh::MeshAccessError;
 use bevy::pbr::Lightmap;
 use bevy::prelude::*;
 
 /// Frames between taking a lightmap off and putting another on; the renderer must have seen one without it.
 const FRAMES_BETWEEN: u8 = 3;
+
+/// What an entity shows of a bake.
+#[derive(Clone)]
+pub(crate) struct Shown {
+    /// The lightmap.
+    pub(crate) lightmap: Lightmap,
+    /// How the bake laid out its mesh, if it did.
+    pub(crate) layout: Option<SharedLayout>,
+}
 
 /// A lightmap that goes on once the renderer has forgotten the one before.
 #[derive(Component, Clone)]
@@ -26,6 +37,12 @@ pub(crate) enum CannotAttach {
     Despawned,
     /// It has no `Mesh3d` with a `StandardMaterial`.
     NoStandardMaterial,
+    /// Its mesh is not there yet.
+    NotLoaded,
+    /// Its mesh must be laid out, and its vertices are with the renderer.
+    RenderWorldOnly,
+    /// Its mesh is not the one that was baked.
+    MeshChanged,
     /// Its mesh has no second UV set, without which Bevy's shader does not compile.
     NoUv1,
     /// Its mesh is skinned or morphed, for which Bevy's shader does not compile either.
@@ -37,16 +54,40 @@ impl std::fmt::Display for CannotAttach {
         f.write_str(match self {
             Self::Despawned => "is no longer there",
             Self::NoStandardMaterial => "has no StandardMaterial",
+            Self::NotLoaded => "has a mesh that is not loaded",
+            Self::RenderWorldOnly => {
+                "has a mesh that is in the render world only (load it with RenderAssetUsages::MAIN_WORLD as well)"
+            }
+            Self::MeshChanged => "has another mesh than the one that was baked (bake again)",
             Self::NoUv1 => "has no UV1",
             Self::Deformed => "is skinned or morphed",
         })
     }
 }
 
-/// Puts a lightmap on an entity, at once or in a few frames if it has another one.
-pub(crate) fn attach(world: &mut World, entity: Entity, lightmap: Lightmap) -> Result<(), CannotAttach> {
-    check(world, entity)?;
+impl From<CannotLayOut> for CannotAttach {
+    fn from(error: CannotLayOut) -> Self {
+        match error {
+            CannotLayOut::RenderWorldOnly => Self::RenderWorldOnly,
+            CannotLayOut::Changed => Self::MeshChanged,
+        }
+    }
+}
+
+/// Puts a lightmap on an entity, at once or in a few frames if it has another one. The mesh that belongs to it goes
+/// on at once.
+pub(crate) fn attach(world: &mut World, entity: Entity, shown: Shown) -> Result<(), CannotAttach> {
+    let own = check(world, entity)?;
+    let Shown { lightmap, layout } = shown;
+    let laid_out = match layout {
+        Some(layout) => Some(wear::lay_out(world, own, layout)?),
+        None => check_uv1(world, &own).map(|()| None)?,
+    };
     let mut entity = world.get_entity_mut(entity).map_err(|_| CannotAttach::Despawned)?;
+    match laid_out {
+        Some(laid_out) => wear::put_on(&mut entity, laid_out),
+        None => wear::take_off(&mut entity),
+    }
     if entity.contains::<PendingLightmap>() {
         entity.insert(PendingLightmap { lightmap, frames_left: FRAMES_BETWEEN });
     } else if entity.contains::<Lightmap>() {
@@ -58,19 +99,22 @@ pub(crate) fn attach(world: &mut World, entity: Entity, lightmap: Lightmap) -> R
     Ok(())
 }
 
-/// Takes the lightmap off an entity, if it is there and has one.
+/// Takes the lightmap and its mesh off an entity, if it is there and has them.
 pub(crate) fn detach(world: &mut World, entity: Entity) {
     if let Ok(mut entity) = world.get_entity_mut(entity) {
         entity.remove::<(Lightmap, PendingLightmap)>();
+        wear::take_off(&mut entity);
         touch_material(&mut entity);
     }
 }
 
-/// The lightmap that an entity has or will have in a few frames.
+/// What an entity shows, or will in a few frames.
 #[cfg(feature = "bake")]
-pub(crate) fn attached(world: &World, entity: Entity) -> Option<Lightmap> {
-    let pending = world.get::<PendingLightmap>(entity).map(|pending| pending.lightmap.clone());
-    pending.or_else(|| world.get::<Lightmap>(entity).cloned())
+pub(crate) fn attached(world: &World, entity: Entity) -> Option<Shown> {
+    let entity = world.get_entity(entity).ok()?;
+    let pending = entity.get::<PendingLightmap>().map(|pending| &pending.lightmap);
+    let lightmap = pending.or_else(|| entity.get::<Lightmap>())?.clone();
+    Some(Shown { lightmap, layout: wear::worn_layout(entity).cloned() })
 }
 
 /// Counts the frames of those that wait.
@@ -99,9 +143,10 @@ fn touch_material(entity: &mut EntityWorldMut) {
     }
 }
 
-fn check(world: &World, entity: Entity) -> Result<(), CannotAttach> {
+/// The entity's own mesh, if it can show a lightmap.
+fn check(world: &World, entity: Entity) -> Result<Handle<Mesh>, CannotAttach> {
     let entity = world.get_entity(entity).map_err(|_| CannotAttach::Despawned)?;
-    let (Some(mesh), true) = (entity.get::<Mesh3d>(), entity.contains::<MeshMaterial3d<StandardMaterial>>()) else {
+    let (Some(mesh), true) = (wear::own_mesh(entity), entity.contains::<MeshMaterial3d<StandardMaterial>>()) else {
         return Err(CannotAttach::NoStandardMaterial);
     };
     if entity.contains::<bevy::mesh::skinning::SkinnedMesh>()
@@ -109,8 +154,13 @@ fn check(world: &World, entity: Entity) -> Result<(), CannotAttach> {
     {
         return Err(CannotAttach::Deformed);
     }
-    let Some(mesh) = world.get_resource::<Assets<Mesh>>().and_then(|meshes| meshes.get(&mesh.0)) else {
-        return Err(CannotAttach::NoUv1);
+    let is_loaded = world.get_resource::<Assets<Mesh>>().is_some_and(|meshes| meshes.contains(mesh));
+    if is_loaded { Ok(mesh.clone()) } else { Err(CannotAttach::NotLoaded) }
+}
+
+fn check_uv1(world: &World, mesh: &Handle<Mesh>) -> Result<(), CannotAttach> {
+    let Some(mesh) = world.get_resource::<Assets<Mesh>>().and_then(|meshes| meshes.get(mesh)) else {
+        return Err(CannotAttach::NotLoaded);
     };
     match mesh.try_contains_attribute(Mesh::ATTRIBUTE_UV_1) {
         // What went to the renderer cannot be looked into; whoever baked it has seen its UV1.

@@ -1,8 +1,9 @@
-//! A baked folder as a Bevy asset: its manifest and its textures.
+//! A baked folder as a Bevy asset: its manifest, its textures and the layouts of its meshes.
 
-use crate::artefact::{Manifest, ManifestError};
+use super::wear::SharedLayout;
+use crate::artefact::{MESHES_FILE, Manifest, ManifestError, MeshLayout, MeshLayoutError, StableId};
 use bevy::asset::io::Reader;
-use bevy::asset::{AssetLoader, AssetPath, LoadContext};
+use bevy::asset::{AssetLoader, AssetPath, LoadContext, ReadAssetBytesError};
 use bevy::image::{ImageAddressMode, ImageLoaderSettings, ImageSampler, ImageSamplerDescriptor};
 use bevy::prelude::*;
 use std::path::PathBuf;
@@ -16,6 +17,8 @@ pub struct BakedFolder {
     /// The textures, in the manifest's order.
     #[dependency]
     pub pages: Vec<Handle<Image>>,
+    /// The layouts of the meshes that the bake laid out anew, in their file's order.
+    pub(crate) meshes: Vec<SharedLayout>,
 }
 
 /// Why a baked folder cannot be loaded.
@@ -31,6 +34,20 @@ pub enum BakedFolderError {
     /// The manifest cannot be used.
     #[error(transparent)]
     Manifest(#[from] ManifestError),
+    /// The file of the meshes is not beside the manifest, or cannot be read.
+    #[error("{MESHES_FILE} cannot be read ({0}); copy the whole folder that the bake wrote")]
+    NoMeshes(#[from] ReadAssetBytesError),
+    /// The file of the meshes cannot be used.
+    #[error(transparent)]
+    Meshes(#[from] MeshLayoutError),
+    /// A placement names a mesh that is not in the file.
+    #[error("{MESHES_FILE} has no mesh {mesh}, which \"{id}\" is to show; copy the whole folder that the bake wrote")]
+    MissingMesh {
+        /// The object.
+        id: StableId,
+        /// The mesh asked for.
+        mesh: u32,
+    },
 }
 
 /// Reads `kiln.ron`. It claims no file extension, so that it stands in the way of no other RON asset.
@@ -63,8 +80,25 @@ impl AssetLoader for BakedFolderLoader {
             load_context.load_builder().with_settings(with_sampler).load(path)
         });
         let pages = pages.collect();
-        Ok(BakedFolder { manifest, pages })
+        let meshes = match &manifest.meshes {
+            Some(file) => {
+                let path = here.resolve_embed(&AssetPath::from(PathBuf::from(file)));
+                MeshLayout::read_all(&load_context.read_asset_bytes(path).await?)?
+            }
+            None => Vec::new(),
+        };
+        check_meshes(&manifest, meshes.len())?;
+        Ok(BakedFolder { manifest, pages, meshes: meshes.into_iter().map(SharedLayout::from).collect() })
     }
+}
+
+fn check_meshes(manifest: &Manifest, count: usize) -> Result<(), BakedFolderError> {
+    for placement in &manifest.placements {
+        if let Some(mesh) = placement.mesh.filter(|&mesh| mesh as usize >= count) {
+            return Err(BakedFolderError::MissingMesh { id: placement.id.clone(), mesh });
+        }
+    }
+    Ok(())
 }
 
 /// How a lightmap is sampled: linearly, and never from the other side of the texture.

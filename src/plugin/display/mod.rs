@@ -2,20 +2,27 @@
 
 mod apply;
 mod attach;
+mod attribute;
 mod folder;
 mod mute;
+mod relay;
 mod stable_path;
+mod wear;
 
 pub use apply::{AppliedLightmaps, BakedLightmaps};
 pub use folder::{BakedFolder, BakedFolderError};
 pub use stable_path::{KilnId, stable_id};
 
 #[cfg(feature = "bake")]
-pub(crate) use attach::{attach, attached, detach};
+pub(crate) use attach::{Shown, attach, attached, detach};
+#[cfg(feature = "bake")]
+pub(crate) use attribute::numbers;
 #[cfg(feature = "bake")]
 pub(crate) use folder::lightmap_sampler;
 #[cfg(feature = "bake")]
 pub(crate) use mute::{MutedLight, mute_light, unmute_light};
+#[cfg(feature = "bake")]
+pub(crate) use wear::{SharedLayout, own_mesh};
 
 use super::KilnSystems;
 use bevy::asset::AssetApp;
@@ -29,6 +36,8 @@ pub(super) fn plugin(app: &mut App) {
         .add_observer(apply::take_off_with_component)
         .add_systems(
             PreUpdate,
-            (attach::attach_pending, apply::apply_baked_lightmaps).chain().in_set(KilnSystems::Display),
+            (attach::attach_pending, wear::forget_copies_of_changed, apply::apply_baked_lightmaps)
+                .chain()
+                .in_set(KilnSystems::Display),
         );
 }

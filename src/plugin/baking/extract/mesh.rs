@@ -1,7 +1,8 @@
 //! `Mesh3d` into meshes and instances.
 
-use super::{Extraction, ExtractionWarning, Thing, attribute, material};
+use super::{Extraction, ExtractionWarning, Thing, material};
 use crate::plugin::baking::SceneSettings;
+use crate::plugin::display::{numbers, own_mesh};
 use crate::scene::{self, Instance, LightmapRequest, Topology};
 use bevy::mesh::morph::MeshMorphWeights;
 use bevy::mesh::skinning::SkinnedMesh;
@@ -16,8 +17,9 @@ pub(super) fn extract(
     settings: &SceneSettings,
     out: &mut Extraction,
 ) {
-    let Some(mesh) = world.get::<Mesh3d>(thing.entity) else { return };
-    let Some(mesh) = place_mesh(world, thing, &mesh.0, out) else { return };
+    // Not what an earlier bake made of it, so that a second bake is the same as the first.
+    let Some(mesh) = world.get_entity(thing.entity).ok().and_then(own_mesh) else { return };
+    let Some(mesh) = place_mesh(world, thing, mesh, out) else { return };
     if let Some(how) = deformation(world, thing.entity) {
         out.warnings.push(ExtractionWarning::Deformed { name: thing.name.clone(), how });
         request = None;
@@ -91,7 +93,7 @@ fn read(
     let Some(positions) = three(positions) else { return Err(format_warning(&name, "positions", positions)) };
     let mut optional = |which: MeshVertexAttribute, what: &'static str| -> Result<Option<_>, ExtractionWarning> {
         let Some(values) = attribute(which)? else { return Ok(None) };
-        let numbers = attribute::numbers(values);
+        let numbers = numbers(values);
         match &numbers {
             None => warnings.push(format_warning(&name, what, values)),
             // A faulty UV1 costs the mesh its lightmap, and the scene's own check says so.
@@ -124,7 +126,7 @@ fn not_finite(name: &str, attribute: &'static str, numbers: &[Vec4]) -> Option<E
 }
 
 fn three(values: &VertexAttributeValues) -> Option<Vec<Vec3>> {
-    Some(attribute::numbers(values)?.iter().map(|position| position.truncate()).collect())
+    Some(numbers(values)?.iter().map(|position| position.truncate()).collect())
 }
 
 fn format_warning(name: &str, attribute: &'static str, found: &VertexAttributeValues) -> ExtractionWarning {

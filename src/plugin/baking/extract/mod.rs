@@ -3,7 +3,6 @@
 //!
 //! Nothing depends on entity numbers: everything is ordered by its stable id, and equal ids by where they stand.
 
-mod attribute;
 mod camera;
 mod environment;
 mod light;

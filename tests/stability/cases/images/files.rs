@@ -171,6 +171,7 @@ fn decoded(bytes: &[u8], format: TexelFormat) -> Vec<[f64; 3]> {
     };
     let texel = |texel: &[u8]| match format {
         TexelFormat::Rgba16f => [0, 2, 4].map(|at| half(u16::from_le_bytes([texel[at], texel[at + 1]]))),
+        TexelFormat::Bc6h => unreachable!("its texels are judged by a decoder of blocks"),
         TexelFormat::Rgb9e5 => {
             let bits = u32::from_le_bytes([texel[0], texel[1], texel[2], texel[3]]);
             let scale = 2.0_f64.powi((bits >> 27) as i32 - 24);

@@ -4,7 +4,7 @@ use bevy::math::Vec4;
 use bevy::mesh::VertexAttributeValues as Values;
 
 /// One vector per vertex; `None` for formats that a shader takes as integers or does not take as floats.
-pub(super) fn numbers(values: &Values) -> Option<Vec<Vec4>> {
+pub(crate) fn numbers(values: &Values) -> Option<Vec<Vec4>> {
     Some(match values {
         Values::Float32(v) => widen(v.iter().map(|&x| [x])),
         Values::Float32x2(v) => widen(v.iter().copied()),
