@@ -4,14 +4,14 @@ use super::atlas::{Atlas, Chart};
 use super::balance::energy_balance;
 use super::endless::refuse_endless_texels;
 use super::gather::Estimate;
-use super::repair::{Field, TexelState, repair};
+use super::repair::{DisplayedRect, Field, Filtering, Repairs, Surroundings, TexelState, repair};
 use super::sites::{Covered, Site, Sites};
 use super::workers::Workers;
 use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, ProgressSink, Stage};
 use crate::artefact::StableId;
 use crate::scene::{Fault, Light, Scene};
 use crate::trace::{Compiled, Tracer, effect_of};
-use glam::Vec3;
+use glam::{DVec3, Vec2, Vec3};
 use std::time::Instant;
 
 /// A finished lightmap bake.
@@ -89,13 +89,15 @@ pub fn bake_lightmap(
     let balance = energy_balance(&tracer, &sites, &work.results, &settings.transport, &workers)?;
     workers.announce(Stage::Repair)?;
     let mut fields = fields(&atlas, &sites, &work.results, &hidden);
-    repair(&mut fields, settings, &workers)?;
+    let place = Surroundings { scene, tracer: &tracer, atlas: &atlas, sites: &sites };
+    let Repairs { seams } = repair(&mut fields, &place, settings, &workers)?;
     let pages = pages(fields, &sites, &work.results);
     let of_transport = BakeWarning::of_transport(&settings.transport, &census);
     let warnings = faults.into_iter().map(BakeWarning::from).chain(of_uv1).chain(of_transport);
     let report = BakeReport {
         energy_balance: balance,
         hidden: hidden.len() as u64,
+        seams,
         ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings)
     };
     let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));
@@ -144,16 +146,30 @@ fn pages(fields: Vec<Field>, sites: &[Site], estimates: &[Estimate]) -> Vec<Page
 
 fn placements(scene: &Scene, atlas: &Atlas<'_>) -> Vec<Placement> {
     let place = |chart: &Chart<'_>| {
-        let page = atlas.pages[chart.page as usize];
-        let uv = |texel: [u32; 2]| [0, 1].map(|axis| (f64::from(texel[axis]) / f64::from(page[axis])) as f32);
-        Placement {
-            id: scene.instances[chart.receiver.instance].id.clone(),
-            page: chart.page,
-            uv_min: uv(chart.origin),
-            uv_max: uv([0, 1].map(|axis| chart.origin[axis] + chart.size[axis])),
-        }
+        let [uv_min, uv_max] = corners(chart, atlas.pages[chart.page as usize]);
+        Placement { id: scene.instances[chart.receiver.instance].id.clone(), page: chart.page, uv_min, uv_max }
     };
     atlas.charts.iter().map(place).collect()
+}
+
+/// Smallest and largest corner of an object's rectangle in the unit square of a page of this size.
+pub(super) fn corners(chart: &Chart<'_>, page: [u32; 2]) -> [[f32; 2]; 2] {
+    let uv = |texel: [u32; 2]| [0, 1].map(|axis| (f64::from(texel[axis]) / f64::from(page[axis])) as f32);
+    [uv(chart.origin), uv([0, 1].map(|axis| chart.origin[axis] + chart.size[axis]))]
+}
+
+impl Lightmap {
+    /// E/π as displayed at a point of an object's UV1 [cd/m²]: what a texture unit reads of its page, by the rectangle
+    /// as Bevy keeps it, in 16 bits per coordinate. Black for a page that is not there.
+    pub fn sample(&self, placement: &Placement, uv1: Vec2, filtering: Filtering) -> Vec3 {
+        let Some(page) = self.pages.get(placement.page as usize).filter(|page| !page.radiance.is_empty()) else {
+            return Vec3::ZERO;
+        };
+        let size = [page.width, page.height];
+        let rect = DisplayedRect::new(placement.uv_min, placement.uv_max, size);
+        let taps = filtering.taps(size, rect.point(uv1.as_dvec2()));
+        taps.iter().map(|(texel, weight)| page.radiance[texel].as_dvec3() * weight).sum::<DVec3>().as_vec3()
+    }
 }
 
 /// Refuses a scene in which a bake would have nothing to do.
