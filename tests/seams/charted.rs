@@ -36,9 +36,13 @@ pub fn mesh(name: &str, patches: &[Patch]) -> Mesh {
     for (number, patch) in patches.iter().enumerate() {
         let cell = Vec2::new((number % columns) as f32 + 0.5, (number / columns) as f32 + 0.5) / columns as f32;
         let first = positions.len() as u32;
+        let around = match patch.outline {
+            Outline::Square(_) => CELLS,
+            Outline::Disc => 3 * CELLS,
+        };
         for row in 0..=CELLS {
-            for column in 0..=CELLS {
-                let [s, t] = [column, row].map(|along| along as f32 / CELLS as f32);
+            for column in 0..=around {
+                let [s, t] = [column as f32 / around as f32, row as f32 / CELLS as f32];
                 let (position, normal) = (patch.at)(s, t);
                 positions.push(position);
                 normals.push(normal.normalize());
@@ -52,9 +56,9 @@ pub fn mesh(name: &str, patches: &[Patch]) -> Mesh {
             }
         }
         for row in 0..CELLS {
-            for column in 0..CELLS {
-                let corner = first + row * (CELLS + 1) + column;
-                let [a, b, c, d] = [corner, corner + 1, corner + CELLS + 2, corner + CELLS + 1];
+            for column in 0..around {
+                let corner = first + row * (around + 1) + column;
+                let [a, b, c, d] = [corner, corner + 1, corner + around + 2, corner + around + 1];
                 indices.extend([a, b, c, a, c, d]);
             }
         }

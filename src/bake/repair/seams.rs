@@ -24,7 +24,11 @@ const LEAST_ERROR: f64 = 0.01;
 const MOST_ERROR: f64 = 0.3;
 
 /// What a filled texel is taken to be off: it is nobody's measurement.
-const FILLED_ERROR: f64 = 0.5;
+const FILLED_ERROR: f64 = 0.25;
+
+/// Share of the step to a neighbour that a texel may be off, since what was measured is its covered part and what is
+/// read is its centre.
+const OFF_CENTRE: f64 = 0.25;
 
 /// A texel: page and number.
 type Place = (u32, u32);
@@ -43,7 +47,7 @@ pub(super) fn mend(
     let system = System::new(&samples);
     let groups = system.groups(&samples);
     let solutions = workers.gather_quietly(&groups, |group, cancel| {
-        let (rows, unknowns) = system.group(group, &samples, fields);
+        let (rows, unknowns) = system.group(group, &samples, fields, owners);
         solve(&rows, &unknowns, cancel)
     })?;
     for (group, solution) in groups.iter().zip(&solutions) {
@@ -150,7 +154,7 @@ impl System {
     }
 
     /// The equations of a group.
-    fn group(&self, group: &Group, samples: &[Sample], fields: &[Field]) -> (Rows, Vec<Unknown>) {
+    fn group(&self, group: &Group, samples: &[Sample], fields: &[Field], owners: &[Owners]) -> (Rows, Vec<Unknown>) {
         let local_number = |unknown: u32| group.unknowns.partition_point(|&known| known < unknown) as u32;
         let mut rows = Rows::default();
         let mut locals = vec![(0.0, 0.0); group.unknowns.len()];
@@ -174,16 +178,27 @@ impl System {
             let (page, texel) = self.places[number as usize];
             let (field, texel) = (&fields[page as usize], texel as usize);
             let local: f64 = sum / weights;
-            let error = if field.is_measured(texel) {
-                (f64::from(field.stderr[texel].max_element()) / local).clamp(LEAST_ERROR, MOST_ERROR)
-            } else {
-                FILLED_ERROR
+            let measured = |source: usize| {
+                let off = OFF_CENTRE * steepness(field, source);
+                f64::from(field.stderr[source].max_element()).max(off) / local
+            };
+            let error = match owners[page as usize].source(texel) {
+                Some(source) if source == texel => measured(source).clamp(LEAST_ERROR, MOST_ERROR),
+                Some(source) => measured(source).clamp(FILLED_ERROR, 2.0 * FILLED_ERROR),
+                None => FILLED_ERROR,
             };
             Unknown { value: field.value[texel].as_dvec3(), stiffness: stiffness(error, local) }
         };
         let unknowns = group.unknowns.iter().zip(locals).map(unknown).collect();
         (rows, unknowns)
     }
+}
+
+/// The largest step from a measured texel to one that it is linked with [cd/m²].
+fn steepness(field: &Field, texel: usize) -> f64 {
+    let steps = (-1..=1).flat_map(|y| (-1..=1).map(move |x| [x, y]));
+    let linked = steps.filter(|&step| field.links[texel].reaches(step)).filter_map(|step| field.step(texel, step));
+    linked.fold(0.0, |most, other| most.max((field.value[texel] - field.value[other]).abs().max_element().into()))
 }
 
 fn report(samples: &[Sample], solutions: &[Solution]) -> SeamReport {

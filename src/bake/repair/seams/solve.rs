@@ -1,32 +1,41 @@
 //! The least squares of seams: texels move as little as their certainty allows so that lookups agree. Knows rows and
 //! unknowns, no charts.
 //!
-//! Minimised is Σ ω·((a − b)/local)² over all lookups + Σ ((x − x₀)/(σ·local))²·τ² over the texels, σ being a texel's
+//! Minimised is Σ ((a − b)/local)² over all lookups + Σ ((x − x₀)/(σ·local))²·τ² over the texels, σ being a texel's
 //! relative standard error and τ the jump that is borne (Iwanicki 2013, "Lighting Technology of The Last of Us", has
-//! seams of lightmaps as least squares; the weights are ours). Where noise or the shapes of two grids leave a larger
-//! jump the rows in question count more, ω, and all is solved again from there. No texel falls below zero: one that
-//! would is held at zero in the next solution. The solver is that of conjugate gradients (Hestenes and Stiefel 1952)
+//! seams of lightmaps as least squares; the weights are ours). Where that leaves more than what nobody sees, what is
+//! left is added to what the lookup should make up for, and all is solved again from there (the method of multipliers,
+//! Hestenes 1969, Powell 1969): the equations stay as well conditioned as they are. No texel falls below zero: one
+//! that would is held at zero in the next solution. The solver is that of conjugate gradients (Hestenes and Stiefel 1952)
 //! with the diagonal as its preconditioner. All sums run in a fixed order.
 
 use crate::bake::CancelToken;
 use glam::DVec3;
 
-/// The relative jump that is borne.
-const BORNE: f64 = 3e-3;
+/// The relative jump that costs as much as moving a texel by its standard error, τ.
+const BORNE: f64 = 0.02;
 
 /// Relative jumps below this are none.
 const NO_JUMP: f64 = 1e-6;
 
-/// The relative jump above which a lookup counts more in the next round.
+/// The relative jump that is aimed at, and that above which what is left of it is made up for in the next round.
 const TARGET: f64 = 4e-3;
+const NOTED: f64 = 3e-3;
 
-/// Rounds, and how much more a lookup may count from one to the next.
-const ROUNDS: usize = 6;
-const MOST_MORE: f64 = 30.0;
+/// The most rounds.
+const ROUNDS: usize = 20;
+
+/// How often a round is solved again with what fell below zero held there.
+const HOLDS: usize = 3;
+
+/// A row whose jump falls by less than this from round to round counts more in the next, and how much at the most.
+const STUBBORN: f64 = 0.5;
+const EXTRA: f64 = 4.0;
+const MOST_EXTRA: f64 = 1e4;
 
 /// Steps of one solution, and the reduction of the residual after which it is done.
-const STEPS: usize = 400;
-const REDUCTION: f64 = 1e-5;
+const STEPS: usize = 200;
+const REDUCTION: f64 = 1e-3;
 
 /// An unknown: one texel.
 #[derive(Clone, Copy, Debug)]
@@ -72,12 +81,14 @@ impl Rows {
         (0..self.ends.len()).map(move |row| (row, &self.entries[begin(row)..self.ends[row] as usize]))
     }
 
-    /// Relative jumps where the unknowns have moved.
-    fn jumps(&self, moves: &[DVec3]) -> Vec<f64> {
-        let jump = |(row, entries): (usize, &[(u32, f32)])| {
-            (self.difference[row] + read(entries, moves)).abs().max_element() / self.local[row]
-        };
-        self.iter().map(jump).collect()
+    /// The differences where the unknowns have moved.
+    fn left(&self, moves: &[DVec3]) -> Vec<DVec3> {
+        self.iter().map(|(row, entries)| self.difference[row] + read(entries, moves)).collect()
+    }
+
+    /// Differences over the local values.
+    fn relative(&self, left: &[DVec3]) -> Vec<f64> {
+        left.iter().zip(&self.local).map(|(left, local)| left.abs().max_element() / local).collect()
     }
 }
 
@@ -94,42 +105,80 @@ pub(super) fn stiffness(relative_error: f64, local: f64) -> f64 {
 /// Solves one group of seams; `None` if cancelled.
 pub(super) fn solve(rows: &Rows, unknowns: &[Unknown], cancel: &CancelToken) -> Option<Solution> {
     let mut moves = vec![DVec3::ZERO; unknowns.len()];
-    let before = rows.jumps(&moves);
-    let mut after = before.clone();
-    if before.iter().all(|&jump| jump < NO_JUMP) {
-        return Some(Solution { moves, before, after });
+    let before = rows.relative(&rows.difference);
+    let mut best = (moves.clone(), before.clone());
+    if worst(&before) < NO_JUMP {
+        return Some(Solution { moves, after: before.clone(), before });
     }
+    let mut extra = vec![1.0; rows.local.len()];
+    let mut last = before.clone();
     let mut weights: Vec<f64> = rows.local.iter().map(|local| 1.0 / (local * local)).collect();
     let mut free = vec![DVec3::ONE; unknowns.len()];
-    for _ in 0..ROUNDS {
-        let problem = Problem { rows, unknowns, weights: &weights, free: &free };
-        problem.descend(&mut moves, cancel)?;
-        let mut is_done = true;
-        for ((step, unknown), free) in moves.iter_mut().zip(unknowns).zip(&mut free) {
-            let below = (unknown.value + *step).cmplt(DVec3::ZERO);
-            if below.any() {
-                *step = DVec3::select(below, -unknown.value, *step);
-                *free = DVec3::select(below, DVec3::ZERO, *free);
-                is_done = false;
+    let mut goals = rows.difference.clone();
+    for round in 0..ROUNDS {
+        free.fill(DVec3::ONE);
+        for _ in 0..HOLDS {
+            let problem = Problem { rows, unknowns, goals: &goals, weights: &weights, free: &free };
+            problem.descend(&mut moves, cancel)?;
+            if !hold(unknowns, &mut moves, &mut free) {
+                break;
             }
         }
-        after = rows.jumps(&moves);
-        for (weight, &jump) in weights.iter_mut().zip(&after).filter(|(_, jump)| **jump > TARGET) {
-            let excess = jump / TARGET;
-            *weight *= (2.0 * excess * excess).min(MOST_MORE);
-            is_done = false;
+        let left = rows.left(&moves);
+        let after = rows.relative(&left);
+        if round + 1 == ROUNDS {
+            let mut order: Vec<usize> = (0..after.len()).collect();
+            order.sort_by(|&a, &b| after[b].total_cmp(&after[a]));
+            for &row in order.iter().take(6) {
+                let begin = if row == 0 { 0 } else { rows.ends[row - 1] as usize };
+                let entries = &rows.entries[begin..rows.ends[row] as usize];
+                eprintln!("DBG worst row {row} local {:.4} jump {:.4} before {:.4} extra {}", rows.local[row], after[row], before[row], extra[row]);
+                for &(u, w) in entries { let k = &unknowns[u as usize]; eprintln!("   DBG u{u} w {w:.4} x0 {:.3} err {:.3} move {:.3} held {}", k.value.x, BORNE/k.stiffness.sqrt()/rows.local[row], moves[u as usize].x, 3.0-free[u as usize].element_sum()); }
+            }
         }
-        if is_done {
+        eprintln!("DBG round {round} unknowns {} rows {} max {:.5} above {}", unknowns.len(), rows.local.len(), after.iter().cloned().fold(0.0,f64::max), after.iter().filter(|j| **j>TARGET).count());
+        if worst(&after) < worst(&best.1) {
+            best = (moves.clone(), after.clone());
+        }
+        if worst(&after) <= TARGET {
             break;
         }
+        for row in (0..goals.len()).filter(|&row| after[row] > NOTED) {
+            goals[row] += left[row];
+            if after[row] > TARGET.max(STUBBORN * last[row]) && extra[row] < MOST_EXTRA {
+                extra[row] *= EXTRA;
+                weights[row] *= EXTRA;
+                goals[row] = rows.difference[row] + (goals[row] - rows.difference[row]) / EXTRA;
+            }
+        }
+        last.clone_from(&after);
     }
+    let (moves, after) = best;
     Some(Solution { moves, before, after })
+}
+
+fn worst(jumps: &[f64]) -> f64 {
+    jumps.iter().copied().fold(0.0, f64::max)
+}
+
+/// Puts at zero what has fallen below, to stay there; tells whether there was any.
+fn hold(unknowns: &[Unknown], moves: &mut [DVec3], free: &mut [DVec3]) -> bool {
+    let mut is_any = false;
+    for ((step, unknown), free) in moves.iter_mut().zip(unknowns).zip(free) {
+        let below = (unknown.value + *step).cmplt(DVec3::ZERO);
+        *step = DVec3::select(below, -unknown.value, *step);
+        *free = DVec3::select(below, DVec3::ZERO, *free);
+        is_any |= below.any();
+    }
+    is_any
 }
 
 /// One round.
 struct Problem<'a> {
     rows: &'a Rows,
     unknowns: &'a [Unknown],
+    /// What the moves of each row are to make up for.
+    goals: &'a [DVec3],
     /// Of the rows.
     weights: &'a [f64],
     /// One where a channel of an unknown may move, else zero.
@@ -164,7 +213,7 @@ impl Problem<'_> {
         let mut result: Vec<DVec3> =
             moves.iter().zip(self.unknowns).map(|(&step, unknown)| -step * unknown.stiffness).collect();
         for (row, entries) in self.rows.iter() {
-            self.scatter(row, entries, -(self.rows.difference[row] + read(entries, moves)), &mut result);
+            self.scatter(row, entries, -(self.goals[row] + read(entries, moves)), &mut result);
         }
         self.mask(&mut result);
         result
@@ -190,10 +239,11 @@ impl Problem<'_> {
         let mut size = dot(&residual, &conditioned);
         let goal = size * (REDUCTION * REDUCTION);
         let mut image = vec![DVec3::ZERO; moves.len()];
-        for _ in 0..STEPS {
+        for step_n in 0..STEPS {
             if cancel.is_cancelled() {
                 return None;
             }
+            if step_n + 1 == STEPS { eprintln!("DBG steps {step_n}"); }
             if size.cmple(goal).all() {
                 break;
             }
