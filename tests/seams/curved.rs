@@ -25,11 +25,7 @@ pub fn scene(name: &str, patches: &[Patch]) -> Scene {
         lightmap: None,
     };
     let turned = Affine3A::from_rotation_translation(Quat::from_rotation_z(0.3), Vec3::new(0.1, 0.2, -0.1));
-    let shape = Instance {
-        world_from_local: turned,
-        lightmap: Some(LightmapRequest::default()),
-        ..instance(1, name)
-    };
+    let shape = Instance { world_from_local: turned, lightmap: Some(LightmapRequest::default()), ..instance(1, name) };
     let lamp = PointLight {
         id: StableId::new("lamp"),
         name: "lamp".into(),

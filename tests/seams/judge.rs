@@ -39,7 +39,8 @@ fn edges(scene: &Scene) -> Vec<Edge> {
         let mesh = &scene.meshes[instance.mesh];
         let uv1 = mesh.uv1.as_ref().unwrap();
         for triangle in mesh.triangles() {
-            let world = triangle.map(|vertex| instance.world_from_local.transform_point3(mesh.positions[vertex as usize]));
+            let world =
+                triangle.map(|vertex| instance.world_from_local.transform_point3(mesh.positions[vertex as usize]));
             let flat = (world[1] - world[0]).cross(world[2] - world[0]).normalize();
             let normal = |vertex: u32| match &mesh.normals {
                 Some(normals) => instance.world_from_local.transform_vector3(normals[vertex as usize]).normalize(),

@@ -68,7 +68,8 @@ pub(super) fn dilate(field: &mut Field, workers: &Workers<'_>) -> Result<Owners,
         ring.dedup();
         let filled = workers.gather_quietly(&ring, |&index, cancel| {
             // A hidden texel waits for its own chart.
-            let source = nearest_source(field, &owners, index).filter(|(is_foreign, _)| !is_foreign || pass >= PATIENCE);
+            let source =
+                nearest_source(field, &owners, index).filter(|(is_foreign, _)| !is_foreign || pass >= PATIENCE);
             let filled = source.map(|(_, source)| (source, carried_on(field, source, index)));
             (!cancel.is_cancelled()).then_some(filled)
         })?;
@@ -119,7 +120,9 @@ fn around(field: &Field, source: usize) -> Vec<([i32; 2], usize)> {
         next += 1;
         for step in (-1..=1).flat_map(|y| (-1..=1).map(move |x| [x, y])) {
             let place: [i32; 2] = [x + step[0], y + step[1]];
-            if place.iter().any(|along| along.abs() > REACH) || is_known[slot(place)] || !field.links[index].reaches(step)
+            if place.iter().any(|along| along.abs() > REACH)
+                || is_known[slot(place)]
+                || !field.links[index].reaches(step)
             {
                 continue;
             }
@@ -164,8 +167,7 @@ fn complete_blocks(field: &mut Field, owners: &mut Owners) {
         for left in (0..width).step_by(BLOCK as usize) {
             let rows = top..(top + BLOCK).min(height);
             let texels = rows.flat_map(|y| (left..(left + BLOCK).min(width)).map(move |x| (y * width + x) as usize));
-            let (filled, empty): (Vec<usize>, Vec<usize>) =
-                texels.partition(|&texel| owners.source[texel] != NONE);
+            let (filled, empty): (Vec<usize>, Vec<usize>) = texels.partition(|&texel| owners.source[texel] != NONE);
             if filled.is_empty() {
                 continue;
             }

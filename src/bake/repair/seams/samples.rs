@@ -15,7 +15,7 @@ use crate::trace::PathStart;
 use glam::{DVec2, DVec3, Vec3};
 
 /// Samples for each texel of the finer side.
-const PER_TEXEL: f64 = 3.0;
+const PER_TEXEL: f64 = 5.0;
 
 /// The least cosine between receiving normals across a joint: 5°.
 const SMOOTH: f32 = 0.996_194_7;

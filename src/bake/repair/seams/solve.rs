@@ -115,7 +115,7 @@ pub(super) fn solve(rows: &Rows, unknowns: &[Unknown], cancel: &CancelToken) -> 
     let mut weights: Vec<f64> = rows.local.iter().map(|local| 1.0 / (local * local)).collect();
     let mut free = vec![DVec3::ONE; unknowns.len()];
     let mut goals = rows.difference.clone();
-    for round in 0..ROUNDS {
+    for _ in 0..ROUNDS {
         free.fill(DVec3::ONE);
         for _ in 0..HOLDS {
             let problem = Problem { rows, unknowns, goals: &goals, weights: &weights, free: &free };
@@ -126,17 +126,6 @@ pub(super) fn solve(rows: &Rows, unknowns: &[Unknown], cancel: &CancelToken) -> 
         }
         let left = rows.left(&moves);
         let after = rows.relative(&left);
-        if round + 1 == ROUNDS {
-            let mut order: Vec<usize> = (0..after.len()).collect();
-            order.sort_by(|&a, &b| after[b].total_cmp(&after[a]));
-            for &row in order.iter().take(6) {
-                let begin = if row == 0 { 0 } else { rows.ends[row - 1] as usize };
-                let entries = &rows.entries[begin..rows.ends[row] as usize];
-                eprintln!("DBG worst row {row} local {:.4} jump {:.4} before {:.4} extra {}", rows.local[row], after[row], before[row], extra[row]);
-                for &(u, w) in entries { let k = &unknowns[u as usize]; eprintln!("   DBG u{u} w {w:.4} x0 {:.3} err {:.3} move {:.3} held {}", k.value.x, BORNE/k.stiffness.sqrt()/rows.local[row], moves[u as usize].x, 3.0-free[u as usize].element_sum()); }
-            }
-        }
-        eprintln!("DBG round {round} unknowns {} rows {} max {:.5} above {}", unknowns.len(), rows.local.len(), after.iter().cloned().fold(0.0,f64::max), after.iter().filter(|j| **j>TARGET).count());
         if worst(&after) < worst(&best.1) {
             best = (moves.clone(), after.clone());
         }
@@ -239,11 +228,10 @@ impl Problem<'_> {
         let mut size = dot(&residual, &conditioned);
         let goal = size * (REDUCTION * REDUCTION);
         let mut image = vec![DVec3::ZERO; moves.len()];
-        for step_n in 0..STEPS {
+        for _ in 0..STEPS {
             if cancel.is_cancelled() {
                 return None;
             }
-            if step_n + 1 == STEPS { eprintln!("DBG steps {step_n}"); }
             if size.cmple(goal).all() {
                 break;
             }
