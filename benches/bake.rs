@@ -34,6 +34,7 @@ fn settings(estimator: Estimator, layout: Layout, samples_per_texel: u32) -> Bak
         layout,
         denoise: Denoise::Off,
         threads: NonZeroUsize::new(1),
+        ..BakeSettings::default()
     }
 }
 

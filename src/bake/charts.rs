@@ -68,14 +68,14 @@ fn corner_bits(position: Vec3, uv: DVec2) -> ([u32; 3], [u64; 2]) {
 }
 
 /// Sets of numbers that are joined until they stand for the charts (Tarjan 1975, with path halving).
-struct DisjointSets(Vec<u32>);
+pub(super) struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {
-    fn new(count: u32) -> Self {
+    pub(super) fn new(count: u32) -> Self {
         Self((0..count).collect())
     }
 
-    fn root(&mut self, mut of: u32) -> u32 {
+    pub(super) fn root(&mut self, mut of: u32) -> u32 {
         while self.0[of as usize] != of {
             let parent = self.0[of as usize];
             self.0[of as usize] = self.0[parent as usize];
@@ -84,7 +84,7 @@ impl DisjointSets {
         of
     }
 
-    fn join(&mut self, a: u32, b: u32) {
+    pub(super) fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         // The smaller number stays, so that the outcome does not hang on the order.
         self.0[a.max(b) as usize] = a.min(b);

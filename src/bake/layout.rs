@@ -61,16 +61,15 @@ pub fn unwrap_meshes(
 /// Where each object lies, in the order of the atlas.
 pub(super) fn placements(laid_out: &LaidOut<'_>, atlas: &Atlas<'_>) -> Vec<Placement> {
     let place = |chart: &Chart<'_>| {
-        let page = atlas.pages[chart.page as usize];
-        let uv = |texel: [u32; 2]| [0, 1].map(|axis| (f64::from(texel[axis]) / f64::from(page[axis])) as f32);
+        let [uv_min, uv_max] = corners(chart, atlas.pages[chart.page as usize]);
         let id = &laid_out.scene.instances[chart.receiver.instance].id;
-        Placement {
-            id: id.clone(),
-            page: chart.page,
-            uv_min: uv(chart.origin),
-            uv_max: uv([0, 1].map(|axis| chart.origin[axis] + chart.size[axis])),
-            mesh: laid_out.mesh_of.get(id).copied(),
-        }
+        Placement { id: id.clone(), page: chart.page, uv_min, uv_max, mesh: laid_out.mesh_of.get(id).copied() }
     };
     atlas.charts.iter().map(place).collect()
+}
+
+/// Smallest and largest corner of an object's rectangle in the unit square of a page of this size.
+pub(super) fn corners(chart: &Chart<'_>, page: [u32; 2]) -> [[f32; 2]; 2] {
+    let uv = |texel: [u32; 2]| [0, 1].map(|axis| (f64::from(texel[axis]) / f64::from(page[axis])) as f32);
+    [uv(chart.origin), uv([0, 1].map(|axis| chart.origin[axis] + chart.size[axis]))]
 }

@@ -5,7 +5,7 @@ use super::balance::energy_balance;
 use super::endless::refuse_endless_texels;
 use super::gather::Estimate;
 use super::layout::placements;
-use super::repair::{Field, TexelState, repair};
+use super::repair::{DisplayedRect, Field, Filtering, Repairs, Surroundings, TexelState, repair};
 use super::sites::{Covered, Site, Sites};
 use super::unwrap::{LaidOut, LaidOutMesh};
 use super::workers::Workers;
@@ -13,7 +13,7 @@ use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, Progr
 use crate::artefact::StableId;
 use crate::scene::{Fault, Light, Scene};
 use crate::trace::{Compiled, Tracer, effect_of};
-use glam::Vec3;
+use glam::{DVec3, Vec2, Vec3};
 use std::time::Instant;
 
 /// A finished lightmap bake.
@@ -104,7 +104,8 @@ pub fn bake_lightmap(
     let balance = energy_balance(&tracer, &sites, &work.results, &settings.transport, &workers)?;
     workers.announce(Stage::Repair)?;
     let mut fields = fields(&atlas, &sites, &work.results, &hidden);
-    let denoised = repair(&mut fields, settings, &workers)?;
+    let place = Surroundings { scene, tracer: &tracer, atlas: &atlas, sites: &sites };
+    let Repairs { denoised, seams } = repair(&mut fields, &place, settings, &workers)?;
     let pages = pages(fields, &sites, &work.results);
     let of_transport = BakeWarning::of_transport(&settings.transport, &census);
     let of_layout = laid_out.warnings.iter().chain(&atlas.warnings).cloned();
@@ -116,6 +117,7 @@ pub fn bake_lightmap(
         fill: atlas.fill(sites.len()),
         unwrapped: laid_out.mesh_of.len() as u64,
         denoised,
+        seams,
         ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings)
     };
     let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));
@@ -165,6 +167,20 @@ fn pages(fields: Vec<Field>, sites: &[Site], estimates: &[Estimate]) -> Vec<Page
         page.is_overlapped[covered.index as usize] = covered.is_overlapped;
     }
     pages
+}
+
+impl Lightmap {
+    /// E/π as displayed at a point of an object's UV1 [cd/m²]: what a texture unit reads of its page, by the rectangle
+    /// as Bevy keeps it, in 16 bits per coordinate. Black for a page that is not there.
+    pub fn sample(&self, placement: &Placement, uv1: Vec2, filtering: Filtering) -> Vec3 {
+        let Some(page) = self.pages.get(placement.page as usize).filter(|page| !page.radiance.is_empty()) else {
+            return Vec3::ZERO;
+        };
+        let size = [page.width, page.height];
+        let rect = DisplayedRect::new(placement.uv_min, placement.uv_max, size);
+        let taps = filtering.taps(size, rect.point(uv1.as_dvec2()));
+        taps.iter().map(|(texel, weight)| page.radiance[texel].as_dvec3() * weight).sum::<DVec3>().as_vec3()
+    }
 }
 
 /// Refuses a scene in which a bake would have nothing to do.

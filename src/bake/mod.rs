@@ -42,7 +42,7 @@ pub use meter::{Measurement, MeterPoint, MeterReading, MeterSettings, measure_ir
 pub use picture::{Picture, PictureSettings, render_picture};
 pub use plan::{BakePlan, PlannedEffect, Prediction};
 pub use progress::{CancelToken, Progress, ProgressSink, Stage};
-pub use repair::TexelState;
-pub use report::{BakeReport, Denoised, RelativeError};
+pub use repair::{Filtering, TexelState};
+pub use report::{BakeReport, Denoised, Jump, RelativeError, SeamReport};
 pub use settings::{BakeSettings, Denoise, Layout};
 pub use unwrap::{LaidOutMesh, UnwrapMethod, Uv1Fault};

@@ -40,6 +40,8 @@ pub struct BakeReport {
     pub unwrapped: u64,
     /// Texels whose value a texture format could not hold.
     pub clamped: u64,
+    /// What was done about seams; `None` where no charts meet on a smooth surface.
+    pub seams: Option<SeamReport>,
     /// What was left out, and what to do about it.
     pub warnings: Vec<BakeWarning>,
 }
@@ -62,6 +64,39 @@ pub struct Denoised {
     pub before: RelativeError,
     /// Of what is shown: the noise that is left, and what was blurred.
     pub after: RelativeError,
+}
+
+/// What was done about seams: the edges of charts across which the surface is smooth.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SeamReport {
+    /// Stretches along which two edges meet.
+    pub joints: u64,
+    /// Points along them at which both sides were compared.
+    pub samples: u64,
+    /// How far both sides were apart after texels were filled, and before they were moved.
+    pub before: Jump,
+    /// How far they are apart now.
+    pub after: Jump,
+}
+
+/// How far two lookups at one point of a joint are apart, bilinear and bicubic ones, over the local value: that of the
+/// strongest channel, and at least a hundredth of the brightest texel that is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Jump {
+    /// 99th percentile.
+    pub p99: f64,
+    /// Worst.
+    pub max: f64,
+}
+
+impl Jump {
+    /// Of all jumps.
+    pub(super) fn of(mut jumps: Vec<f64>) -> Self {
+        jumps.sort_unstable_by(f64::total_cmp);
+        let at = |place: usize| jumps.get(place).copied().unwrap_or_default();
+        let last = jumps.len().saturating_sub(1);
+        Self { p99: at(last * 99 / 100), max: at(last) }
+    }
 }
 
 impl BakeReport {
@@ -88,6 +123,7 @@ impl BakeReport {
             fill: 0.0,
             unwrapped: 0,
             clamped: 0,
+            seams: None,
             warnings: warnings.chain(BakeWarning::of_paths(&work.results)).collect(),
         }
     }

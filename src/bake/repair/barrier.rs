@@ -9,7 +9,8 @@
 //! Two texels are on different sides if one cannot be reached from the other by links between neighbours within
 //! [`WINDOW`] texels: so the leg of a table, around which one can go, is no wall.
 
-use super::Field;
+use super::dilate::Owners;
+use super::{Field, TexelState};
 use crate::math::{Portable, luminance};
 
 /// How far a lookup reads: a bicubic one reads two texels to either side of the texel that it lies in.
@@ -40,13 +41,47 @@ pub(super) fn stop_light_at_walls(field: &mut Field) {
             }
         }
     }
-    // The least of several caps holds, in whatever order they were found.
+    hold(field, caps);
+}
+
+/// The same for what was filled in under a wall that is only a few texels wide, between its two sides, in place.
+pub(super) fn stop_light_in_walls(field: &mut Field, owners: &Owners) {
+    let mut caps: Vec<(usize, f64)> = Vec::new();
+    let mut walk = Walk::default();
+    for here in (0..field.value.len()).filter(|&index| field.is_measured(index)) {
+        let is_inside =
+            |index: &usize| field.state[*index] == TexelState::Hidden && field.chart[*index] == field.chart[here];
+        let hidden: Vec<usize> = within(field, here, REACH).filter(is_inside).collect();
+        if hidden.is_empty() {
+            continue;
+        }
+        walk.reach(field, here, WINDOW);
+        let level = level(field, here, &walk);
+        for there in hidden {
+            let is_of_this_side = owners.source(there).is_none_or(|source| walk.has_reached(source));
+            let brightness = luminance(field.value[there].as_dvec3());
+            if !is_of_this_side && held_to(level, brightness) < brightness {
+                caps.push((there, held_to(level, brightness)));
+            }
+        }
+    }
+    hold(field, caps);
+}
+
+/// Holds texels to the least of their caps, in whatever order they were found.
+fn hold(field: &mut Field, mut caps: Vec<(usize, f64)>) {
     caps.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     caps.dedup_by_key(|(index, _)| *index);
     for (index, cap) in caps {
         let brightness = luminance(field.value[index].as_dvec3());
         field.value[index] *= (cap / brightness) as f32;
     }
+}
+
+/// The texels at most `reach` from one along each axis.
+fn within(field: &Field, centre: usize, reach: i32) -> impl Iterator<Item = usize> {
+    let steps = (-reach..=reach).flat_map(move |y| (-reach..=reach).map(move |x| [x, y]));
+    steps.filter_map(move |step| field.step(centre, step))
 }
 
 /// What is left of a brightness on the other side of a wall from a darker level.
@@ -68,21 +103,18 @@ fn beyond(field: &Field, here: usize, walk: &mut Walk) -> Vec<usize> {
     let apart = |walk: &Walk, index: usize| {
         field.is_measured(index) && field.chart[index] == field.chart[here] && !walk.has_reached(index)
     };
-    let within = |centre: usize, reach: i32| {
-        let steps = (-reach..=reach).flat_map(move |y| (-reach..=reach).map(move |x| [x, y]));
-        steps.filter_map(move |step| field.step(centre, step))
-    };
     // A short walk finds most neighbours where there is no wall.
     walk.reach(field, here, REACH);
-    if !within(here, REACH).any(|index| apart(walk, index)) {
+    if !within(field, here, REACH).any(|index| apart(walk, index)) {
         return Vec::new();
     }
     walk.reach(field, here, WINDOW);
-    let mut beyond: Vec<usize> = within(here, REACH).filter(|&index| apart(walk, index)).collect();
+    let mut beyond: Vec<usize> = within(field, here, REACH).filter(|&index| apart(walk, index)).collect();
     // A texel across which the wall runs has a part on this side, from which lookups reach farther.
-    let split: Vec<usize> = within(here, 1).filter(|&index| apart(walk, index) && field.is_split[index]).collect();
+    let split: Vec<usize> =
+        within(field, here, 1).filter(|&index| apart(walk, index) && field.is_split[index]).collect();
     for texel in split {
-        beyond.extend(within(texel, REACH).filter(|&index| apart(walk, index)));
+        beyond.extend(within(field, texel, REACH).filter(|&index| apart(walk, index)));
     }
     beyond.sort_unstable();
     beyond.dedup();
@@ -91,9 +123,8 @@ fn beyond(field: &Field, here: usize, walk: &mut Walk) -> Vec<usize> {
 
 /// How bright this side is about a texel: the mean of what can be reached nearby, and its error.
 fn level(field: &Field, here: usize, walk: &Walk) -> f64 {
-    let steps = (-REACH..=REACH).flat_map(|y| (-REACH..=REACH).map(move |x| [x, y]));
     let (mut sum, mut variance, mut count) = (0.0, 0.0, 0.0);
-    for index in steps.filter_map(|step| field.step(here, step)).filter(|&index| walk.has_reached(index)) {
+    for index in within(field, here, REACH).filter(|&index| walk.has_reached(index)) {
         sum += luminance(field.value[index].as_dvec3());
         variance += luminance((field.stderr[index] * field.stderr[index]).as_dvec3());
         count += 1.0;
@@ -148,7 +179,6 @@ const NEIGHBOURS: [[i32; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bake::repair::TexelState;
     use crate::bake::validity::Links;
     use glam::Vec3;
 

@@ -1,0 +1,241 @@
+//! Points along the joints at which two lookups should agree, and which texels may move for it. Owns the question
+//! whether the surface is meant to be one across a joint; solves nothing.
+//!
+//! A joint is left alone where the receiving normals differ (a hard edge), where both sides lie on the same side of the
+//! line (a fold, or a face that is there twice), where something stands between the two sides, and where the texels
+//! beside it belong to another room or to none. Of the texels that the lookups read only those may move that hang
+//! together with the joint by links: what lies beyond a wall keeps its light.
+
+use super::super::dilate::Owners;
+use super::super::lookup::{DisplayedRect, Filtering, Taps};
+use super::borders::{Border, Joint};
+use crate::bake::charts::Charts;
+use crate::bake::repair::{Field, Surroundings, TexelState};
+use crate::trace::PathStart;
+use glam::{DVec2, DVec3, Vec3};
+
+/// Samples for each texel of the finer side.
+const PER_TEXEL: f64 = 5.0;
+
+/// The least cosine between receiving normals across a joint: 5°.
+const SMOOTH: f32 = 0.996_194_7;
+
+/// How far beside the joint it is asked what stands on it [texels].
+const ASIDE: f64 = 0.25;
+
+/// The largest weight of the corner beyond the edge at such a place.
+const MOST_ASIDE: f64 = 1.0 / 3.0;
+
+/// The local value is at least this share of the brightest texel that the lookups read.
+const LEAST_LOCAL: f64 = 1e-2;
+
+/// Lookups that lie closer on the same page are the same [texels].
+const SAME_PLACE: f64 = 1e-3;
+
+/// A texel in a row of equations.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    /// Page and texel.
+    pub(super) texel: (u32, u32),
+    /// Its weight in the one lookup less that in the other.
+    pub(super) weight: f64,
+}
+
+/// How two lookups at one point differ.
+#[derive(Clone, Debug)]
+pub(super) struct Row {
+    /// Before anything moves [cd/m²].
+    pub(super) difference: DVec3,
+    /// The texels that may move.
+    pub(super) entries: Vec<Entry>,
+}
+
+/// A point of a joint.
+#[derive(Clone, Debug)]
+pub(super) struct Sample {
+    /// Which joint.
+    pub(super) joint: u32,
+    /// The local value [cd/m²].
+    pub(super) local: f64,
+    /// For each kind of filtering.
+    pub(super) rows: [Row; 2],
+}
+
+/// What samples are made from.
+pub(super) struct Sampling<'a> {
+    pub(super) place: &'a Surroundings<'a>,
+    pub(super) fields: &'a [Field],
+    pub(super) owners: &'a [Owners],
+    pub(super) borders: &'a [Border],
+    pub(super) charts: Charts,
+    /// By page and texel, the place in the list of sites.
+    pub(super) sites: Vec<Vec<u32>>,
+    /// By receiver.
+    pub(super) rects: Vec<DisplayedRect>,
+}
+
+/// One side of a joint at a sample.
+struct Side<'a> {
+    border: &'a Border,
+    page: u32,
+    /// Where it is read [texels].
+    place: DVec2,
+    normal: Vec3,
+    /// Across the edge, into the triangle, in the world.
+    inwards: DVec3,
+    /// A place on the triangle beside the joint.
+    beside: PathStart,
+    /// Where that is read [texels].
+    place_beside: DVec2,
+}
+
+impl<'a> Sampling<'a> {
+    /// The samples of a joint.
+    pub(super) fn samples(&self, number: u32, joint: &Joint) -> Vec<Sample> {
+        let [a, b] = joint.edges.map(|edge| &self.borders[edge as usize]);
+        let share = joint.to - joint.from;
+        let world = a.ends[0].distance(a.ends[1]) * share;
+        let texels = (a.texels() * share).max(b.texels() * world / b.ends[0].distance(b.ends[1]));
+        let count = (PER_TEXEL * texels).ceil().max(1.0) as u32;
+        let sample = |index: u32| {
+            let at = joint.from + share * (f64::from(index) + 0.5) / f64::from(count);
+            let point = a.ends[0].lerp(a.ends[1], at);
+            let sides = [self.side(a, at)?, self.side(b, b.parameter(point).clamp(0.0, 1.0))?];
+            self.sample(number, &sides)
+        };
+        (0..count).filter_map(sample).collect()
+    }
+
+    /// A sample between two sides, if the surface is one there.
+    fn sample(&self, joint: u32, sides: &[Side<'_>; 2]) -> Option<Sample> {
+        let [a, b] = sides;
+        let is_same = a.page == b.page && a.place.distance(b.place) < SAME_PLACE;
+        if is_same || a.normal.dot(b.normal) < SMOOTH {
+            return None;
+        }
+        // Sides of the line, seen from above.
+        let along = a.border.ends[1] - a.border.ends[0];
+        let across = (a.normal + b.normal).as_dvec3().cross(along);
+        if a.inwards.dot(across) * b.inwards.dot(across) >= 0.0
+            || !self.place.tracer.is_open_between(&a.beside, &b.beside)
+        {
+            return None;
+        }
+        let moving = [self.moving(a)?, self.moving(b)?];
+        let (mut local, mut brightest) = (0.0_f64, 0.0_f64);
+        let rows = Filtering::ALL.map(|filtering| {
+            let mut row = Row { difference: DVec3::ZERO, entries: Vec::new() };
+            for ((side, moving), sign) in sides.iter().zip(&moving).zip([1.0, -1.0]) {
+                let field = &self.fields[side.page as usize];
+                let mut read = DVec3::ZERO;
+                for (texel, weight) in filtering.taps(field.size, side.place).iter() {
+                    let value = field.value[texel].as_dvec3();
+                    brightest = brightest.max(value.max_element());
+                    read += weight * value;
+                    if moving.contains(&texel) && weight != 0.0 {
+                        row.entries.push(Entry { texel: (side.page, texel as u32), weight: sign * weight });
+                    }
+                }
+                local = local.max(read.max_element());
+                row.difference += sign * read;
+            }
+            row
+        });
+        let local = local.max(LEAST_LOCAL * brightest);
+        (local > 0.0 && local.is_finite()).then_some(Sample { joint, local, rows })
+    }
+
+    /// One side of a joint, at a place in parts of its edge.
+    fn side(&self, border: &'a Border, at: f64) -> Option<Side<'a>> {
+        let rectangle = &self.place.atlas.charts[border.receiver as usize];
+        let number = rectangle.receiver.first_triangle + border.triangle;
+        let world = self.place.tracer.vertices(number).map(Vec3::as_dvec3);
+        let turn = [0, 1, 2].map(|step| (border.corner + step) % 3);
+        let [from, to, beyond] = turn.map(|corner| world[corner]);
+        let foot = border.parameter(beyond);
+        let inwards = beyond - from.lerp(to, foot);
+        let height = inwards.length();
+        let mut aside = (ASIDE * border.texel / height).min(MOST_ASIDE);
+        // Straight inwards, as far as the triangle goes.
+        let second = |aside: f64| at - aside * foot;
+        while aside > 1e-6 && (second(aside) < 0.0 || second(aside) > 1.0 - aside) {
+            aside *= 0.5;
+        }
+        let second = second(aside).clamp(0.0, 1.0 - aside);
+        let in_turn = [1.0 - aside - second, second, aside];
+        let on_edge = [1.0 - at, at, 0.0];
+        let normals = rectangle.receiver.vertices[border.triangle as usize]
+            .map(|vertex| rectangle.receiver.normals[vertex as usize]);
+        let start = |weights: [f64; 3]| {
+            let mut by_corner = [0.0; 3];
+            turn.iter().zip(weights).for_each(|(&corner, weight)| by_corner[corner] = weight as f32);
+            self.place.tracer.start_on_smooth_triangle(number, [by_corner[1], by_corner[2]], normals)
+        };
+        let size = DVec2::new(rectangle.size[0].into(), rectangle.size[1].into());
+        let texels = rectangle.triangle(border.triangle);
+        let read = |weights: [f64; 3]| {
+            let texel: DVec2 = turn.iter().zip(weights).map(|(&corner, weight)| weight * texels[corner]).sum();
+            self.rects[border.receiver as usize].point(texel / size)
+        };
+        height.is_finite().then(|| Side {
+            border,
+            page: rectangle.page,
+            place: read(on_edge),
+            normal: start(on_edge).normal(),
+            inwards,
+            beside: start(in_turn),
+            place_beside: read(in_turn),
+        })
+    }
+
+    /// The texels around a side that may move: those that hang together with the place beside the joint. `None` where
+    /// the nearest is hidden, or of another room.
+    fn moving(&self, side: &Side<'_>) -> Option<Vec<usize>> {
+        let field = &self.fields[side.page as usize];
+        let owners = &self.owners[side.page as usize];
+        let chart = self.charts.of(side.border.receiver, side.border.triangle);
+        let taps = Filtering::Bicubic.taps(field.size, side.place);
+        let width = field.size[0] as usize;
+        let distance = |texel: usize| {
+            let centre = DVec2::new((texel % width) as f64 + 0.5, (texel / width) as f64 + 0.5);
+            centre.distance_squared(side.place_beside)
+        };
+        let texels = || taps.iter().map(|(texel, _)| texel);
+        let covered = texels().filter(|&texel| field.state[texel] != TexelState::Empty && field.chart[texel] == chart);
+        let nearest = covered.min_by(|&a, &b| distance(a).total_cmp(&distance(b)).then(a.cmp(&b)))?;
+        if !field.is_measured(nearest) {
+            return None;
+        }
+        let site = &self.place.sites[self.sites[side.page as usize][nearest] as usize];
+        let is_open = self.place.tracer.is_open_between(&site.footing.anchor, &side.beside);
+        is_open.then(|| flood(field, owners, &taps, nearest))
+    }
+}
+
+/// The texels of a lookup that hang together with one of them: measured ones by links, and what was filled from those.
+fn flood(field: &Field, owners: &Owners, taps: &Taps, from: usize) -> Vec<usize> {
+    let chart = field.chart[from];
+    let is_read = |texel: usize| taps.iter().any(|(read, _)| read == texel);
+    let mut moving = vec![from];
+    let mut next = 0;
+    while let Some(&texel) = moving.get(next) {
+        next += 1;
+        for step in (-1..=1).flat_map(|y| (-1..=1).map(move |x| [x, y])) {
+            let linked = field.links[texel].reaches(step).then(|| field.step(texel, step)).flatten();
+            let linked = linked.filter(|&other| field.is_measured(other) && is_read(other));
+            if let Some(other) = linked.filter(|other| !moving.contains(other)) {
+                moving.push(other);
+            }
+        }
+    }
+    let measured = moving.len();
+    for (texel, _) in taps.iter() {
+        let Some(source) = owners.source(texel).filter(|_| !field.is_measured(texel)) else { continue };
+        // A source that is not read lies farther in than what is; it may be anyone's.
+        let is_ours = field.chart[source] == chart && (moving[..measured].contains(&source) || !is_read(source));
+        if is_ours && !moving.contains(&texel) {
+            moving.push(texel);
+        }
+    }
+    moving
+}

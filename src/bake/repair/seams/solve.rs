@@ -1,0 +1,305 @@
+//! The least squares of seams: texels move as little as their certainty allows so that lookups agree. Knows rows and
+//! unknowns, no charts.
+//!
+//! Minimised is Σ ((a − b)/local)² over all lookups + Σ ((x − x₀)/(σ·local))²·τ² over the texels, σ being a texel's
+//! relative standard error and τ the jump that is borne (Iwanicki 2013, "Lighting Technology of The Last of Us", has
+//! seams of lightmaps as least squares; the weights are ours). Where that leaves more than what nobody sees, what is
+//! left is added to what the lookup should make up for, and all is solved again from there (the method of multipliers,
+//! Hestenes 1969, Powell 1969): the equations stay as well conditioned as they are. No texel falls below zero: one
+//! that would is held at zero in the next solution. The solver is that of conjugate gradients (Hestenes and Stiefel 1952)
+//! with the diagonal as its preconditioner. All sums run in a fixed order.
+
+use crate::bake::CancelToken;
+use glam::DVec3;
+
+/// The relative jump that costs as much as moving a texel by its standard error, τ.
+const BORNE: f64 = 0.02;
+
+/// Relative jumps below this are none.
+const NO_JUMP: f64 = 1e-6;
+
+/// The relative jump that is aimed at, and that above which what is left of it is made up for in the next round.
+const TARGET: f64 = 4e-3;
+const NOTED: f64 = 3e-3;
+
+/// The most rounds.
+const ROUNDS: usize = 20;
+
+/// How often a round is solved again with what fell below zero held there.
+const HOLDS: usize = 3;
+
+/// A row whose jump falls by less than this from round to round counts more in the next, and how much at the most.
+const STUBBORN: f64 = 0.5;
+const EXTRA: f64 = 4.0;
+const MOST_EXTRA: f64 = 1e4;
+
+/// Steps of one solution, and the reduction of the residual after which it is done.
+const STEPS: usize = 200;
+const REDUCTION: f64 = 1e-3;
+
+/// An unknown: one texel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Unknown {
+    /// Before [cd/m²].
+    pub(super) value: DVec3,
+    /// How much a move costs, τ² of it [(cd/m²)⁻²].
+    pub(super) stiffness: f64,
+}
+
+/// How two lookups differ: `difference + Σ weight·move`.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rows {
+    /// Before [cd/m²].
+    pub(super) difference: Vec<DVec3>,
+    /// The local value [cd/m²].
+    pub(super) local: Vec<f64>,
+    /// Where each row's entries end.
+    pub(super) ends: Vec<u32>,
+    /// Unknowns and weights.
+    pub(super) entries: Vec<(u32, f32)>,
+}
+
+/// What a solution did.
+pub(super) struct Solution {
+    /// By how much each unknown moves [cd/m²].
+    pub(super) moves: Vec<DVec3>,
+    /// The relative jump at each row, before and after.
+    pub(super) before: Vec<f64>,
+    pub(super) after: Vec<f64>,
+}
+
+impl Rows {
+    pub(super) fn push(&mut self, difference: DVec3, local: f64, entries: impl Iterator<Item = (u32, f64)>) {
+        self.entries.extend(entries.map(|(unknown, weight)| (unknown, weight as f32)));
+        self.ends.push(self.entries.len() as u32);
+        self.difference.push(difference);
+        self.local.push(local);
+    }
+
+    fn iter(&self) -> impl Iterator<Item = (usize, &[(u32, f32)])> + '_ {
+        let begin = |row: usize| if row == 0 { 0 } else { self.ends[row - 1] as usize };
+        (0..self.ends.len()).map(move |row| (row, &self.entries[begin(row)..self.ends[row] as usize]))
+    }
+
+    /// The differences where the unknowns have moved.
+    fn left(&self, moves: &[DVec3]) -> Vec<DVec3> {
+        self.iter().map(|(row, entries)| self.difference[row] + read(entries, moves)).collect()
+    }
+
+    /// Differences over the local values.
+    fn relative(&self, left: &[DVec3]) -> Vec<f64> {
+        left.iter().zip(&self.local).map(|(left, local)| left.abs().max_element() / local).collect()
+    }
+}
+
+fn read(entries: &[(u32, f32)], of: &[DVec3]) -> DVec3 {
+    entries.iter().map(|&(unknown, weight)| of[unknown as usize] * f64::from(weight)).sum()
+}
+
+/// τ: how much the stiffness of a texel is that of its relative standard error.
+pub(super) fn stiffness(relative_error: f64, local: f64) -> f64 {
+    let cost = BORNE / (relative_error * local);
+    cost * cost
+}
+
+/// Solves one group of seams; `None` if cancelled.
+pub(super) fn solve(rows: &Rows, unknowns: &[Unknown], cancel: &CancelToken) -> Option<Solution> {
+    let mut moves = vec![DVec3::ZERO; unknowns.len()];
+    let before = rows.relative(&rows.difference);
+    let mut best = (moves.clone(), before.clone());
+    if worst(&before) < NO_JUMP {
+        return Some(Solution { moves, after: before.clone(), before });
+    }
+    let mut extra = vec![1.0; rows.local.len()];
+    let mut last = before.clone();
+    let mut weights: Vec<f64> = rows.local.iter().map(|local| 1.0 / (local * local)).collect();
+    let mut free = vec![DVec3::ONE; unknowns.len()];
+    let mut goals = rows.difference.clone();
+    for _ in 0..ROUNDS {
+        free.fill(DVec3::ONE);
+        for _ in 0..HOLDS {
+            let problem = Problem { rows, unknowns, goals: &goals, weights: &weights, free: &free };
+            problem.descend(&mut moves, cancel)?;
+            if !hold(unknowns, &mut moves, &mut free) {
+                break;
+            }
+        }
+        let left = rows.left(&moves);
+        let after = rows.relative(&left);
+        if worst(&after) < worst(&best.1) {
+            best = (moves.clone(), after.clone());
+        }
+        if worst(&after) <= TARGET {
+            break;
+        }
+        for row in (0..goals.len()).filter(|&row| after[row] > NOTED) {
+            goals[row] += left[row];
+            if after[row] > TARGET.max(STUBBORN * last[row]) && extra[row] < MOST_EXTRA {
+                extra[row] *= EXTRA;
+                weights[row] *= EXTRA;
+                goals[row] = rows.difference[row] + (goals[row] - rows.difference[row]) / EXTRA;
+            }
+        }
+        last.clone_from(&after);
+    }
+    let (moves, after) = best;
+    Some(Solution { moves, before, after })
+}
+
+fn worst(jumps: &[f64]) -> f64 {
+    jumps.iter().copied().fold(0.0, f64::max)
+}
+
+/// Puts at zero what has fallen below, to stay there; tells whether there was any.
+fn hold(unknowns: &[Unknown], moves: &mut [DVec3], free: &mut [DVec3]) -> bool {
+    let mut is_any = false;
+    for ((step, unknown), free) in moves.iter_mut().zip(unknowns).zip(free) {
+        let below = (unknown.value + *step).cmplt(DVec3::ZERO);
+        *step = DVec3::select(below, -unknown.value, *step);
+        *free = DVec3::select(below, DVec3::ZERO, *free);
+        is_any |= below.any();
+    }
+    is_any
+}
+
+/// One round.
+struct Problem<'a> {
+    rows: &'a Rows,
+    unknowns: &'a [Unknown],
+    /// What the moves of each row are to make up for.
+    goals: &'a [DVec3],
+    /// Of the rows.
+    weights: &'a [f64],
+    /// One where a channel of an unknown may move, else zero.
+    free: &'a [DVec3],
+}
+
+impl Problem<'_> {
+    /// The normal equations' left side, of a move.
+    fn apply(&self, of: &[DVec3], result: &mut [DVec3]) {
+        for ((result, &of), unknown) in result.iter_mut().zip(of).zip(self.unknowns) {
+            *result = of * unknown.stiffness;
+        }
+        for (row, entries) in self.rows.iter() {
+            self.scatter(row, entries, read(entries, of), result);
+        }
+        self.mask(result);
+    }
+
+    fn scatter(&self, row: usize, entries: &[(u32, f32)], value: DVec3, result: &mut [DVec3]) {
+        let value = value * self.weights[row];
+        for &(unknown, weight) in entries {
+            result[unknown as usize] += value * f64::from(weight);
+        }
+    }
+
+    fn mask(&self, of: &mut [DVec3]) {
+        of.iter_mut().zip(self.free).for_each(|(of, &free)| *of *= free);
+    }
+
+    /// Minus the gradient where the unknowns have moved.
+    fn downhill(&self, moves: &[DVec3]) -> Vec<DVec3> {
+        let mut result: Vec<DVec3> =
+            moves.iter().zip(self.unknowns).map(|(&step, unknown)| -step * unknown.stiffness).collect();
+        for (row, entries) in self.rows.iter() {
+            self.scatter(row, entries, -(self.goals[row] + read(entries, moves)), &mut result);
+        }
+        self.mask(&mut result);
+        result
+    }
+
+    fn diagonal(&self) -> Vec<f64> {
+        let mut diagonal: Vec<f64> = self.unknowns.iter().map(|unknown| unknown.stiffness).collect();
+        for (row, entries) in self.rows.iter() {
+            for &(unknown, weight) in entries {
+                diagonal[unknown as usize] += self.weights[row] * f64::from(weight) * f64::from(weight);
+            }
+        }
+        diagonal
+    }
+
+    /// Conjugate gradients from where the unknowns are; each channel for itself.
+    fn descend(&self, moves: &mut [DVec3], cancel: &CancelToken) -> Option<()> {
+        let diagonal = self.diagonal();
+        let scaled = |of: &[DVec3]| -> Vec<DVec3> { of.iter().zip(&diagonal).map(|(&of, &by)| of / by).collect() };
+        let mut residual = self.downhill(moves);
+        let mut conditioned = scaled(&residual);
+        let mut direction = conditioned.clone();
+        let mut size = dot(&residual, &conditioned);
+        let goal = size * (REDUCTION * REDUCTION);
+        let mut image = vec![DVec3::ZERO; moves.len()];
+        for _ in 0..STEPS {
+            if cancel.is_cancelled() {
+                return None;
+            }
+            if size.cmple(goal).all() {
+                break;
+            }
+            self.apply(&direction, &mut image);
+            let step = ratio(size, dot(&direction, &image));
+            for index in 0..moves.len() {
+                moves[index] += step * direction[index];
+                residual[index] -= step * image[index];
+            }
+            conditioned = scaled(&residual);
+            let smaller = dot(&residual, &conditioned);
+            let keep = ratio(smaller, size);
+            size = smaller;
+            direction.iter_mut().zip(&conditioned).for_each(|(along, &new)| *along = new + keep * *along);
+        }
+        Some(())
+    }
+}
+
+fn dot(a: &[DVec3], b: &[DVec3]) -> DVec3 {
+    a.iter().zip(b).map(|(&a, &b)| a * b).sum()
+}
+
+/// Quotients, zero where there is nothing to divide by: a channel that is done, or dark.
+fn ratio(a: DVec3, b: DVec3) -> DVec3 {
+    DVec3::select(b.cmpgt(DVec3::ZERO), a / b, DVec3::ZERO)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unknown(value: f64, error: f64) -> Unknown {
+        Unknown { value: DVec3::splat(value), stiffness: stiffness(error, 1.0) }
+    }
+
+    fn two(values: [f64; 2], errors: [f64; 2]) -> Solution {
+        let mut rows = Rows::default();
+        let difference = DVec3::splat(values[0] - values[1]);
+        rows.push(difference, 1.0, [(0, 1.0), (1, -1.0)].into_iter());
+        let unknowns = [unknown(values[0], errors[0]), unknown(values[1], errors[1])];
+        solve(&rows, &unknowns, &CancelToken::default()).unwrap()
+    }
+
+    /// Two texels meet where the weighted mean of the two is, but for what is borne.
+    #[test]
+    fn the_less_certain_moves_more() {
+        let Solution { moves, before, after } = two([1.0, 1.1], [0.01, 0.1]);
+        assert!((before[0] - 0.1).abs() < 1e-12 && after[0] < TARGET, "{before:?} {after:?}");
+        assert!((-moves[1].x / moves[0].x - 100.0).abs() < 1e-3, "{moves:?}");
+    }
+
+    #[test]
+    fn equal_values_and_black_ones_do_not_move() {
+        for value in [0.0, 0.7] {
+            assert!(two([value; 2], [0.1, 0.1]).moves.iter().all(|step| *step == DVec3::ZERO));
+        }
+    }
+
+    #[test]
+    fn nothing_falls_below_zero() {
+        // 2 a − b = 0 cannot hold with b − a = 3 unless both move; a would have to be negative.
+        let mut rows = Rows::default();
+        rows.push(DVec3::splat(4.0), 1.0, [(0, 2.0), (1, 1.0)].into_iter());
+        let unknowns = [unknown(0.5, 0.5), unknown(3.0, 0.001)];
+        let solution = solve(&rows, &unknowns, &CancelToken::default()).unwrap();
+        for (unknown, step) in unknowns.iter().zip(&solution.moves) {
+            assert!((unknown.value + *step).min_element() >= 0.0, "{solution:?}", solution = solution.moves);
+        }
+    }
+}

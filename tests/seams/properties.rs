@@ -1,0 +1,1 @@
+//! What no scene may break.
