@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// 64 bits over a mesh's positions and triangles. It is the same on every machine; of two different shapes it tells
 /// all but one in 2⁶⁴ apart. What does not bear on a layout (normals, colours, how wide the indices are, whether the
 /// triangles come as a list or as a strip) is not in it.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct MeshHash(u64);
 
 impl MeshHash {

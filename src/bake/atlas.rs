@@ -1,23 +1,30 @@
 //! Where each object's texels lie: pages and rectangles.
 //!
-//! `packed`: an object's unit square of UV1 gets a rectangle whose sides follow the root-mean-square stretch of its
-//! UV1 along u and v, times the texel density, so that a texel is about as wide as asked wherever it lies. Rectangles
-//! are packed on shelves by `etagere`, tallest first and by id among equals, so that the same scene gives the same
-//! atlas. `shared`: one page that every object's UV1 already addresses.
+//! `packed`: an object that was unwrapped has the rectangle that its charts were packed for. Of any other, the unit
+//! square of UV1 gets a rectangle whose sides follow the root-mean-square stretch of its UV1 along u and v, times the
+//! texel density, so that a texel is about as wide as asked wherever it lies. Every rectangle has a cell of whole
+//! blocks of 4 × 4 texels to itself and starts two texels into it, so that no block that a texture format compresses
+//! holds texels of two. Cells are packed under a skyline, tallest first and by id among equals, so that the same scene
+//! gives the same atlas. An object too large for a page gets fewer texels per metre, and a warning.
+//! `shared`: one page that every object's UV1 already addresses.
+
+mod skyline;
+mod smallest;
+
+pub(super) use smallest::smallest;
 
 use super::settings::Layout;
-use super::{BakeError, BakeSettings, repair};
-use crate::scene::Scene;
+use super::unwrap::LaidOut;
+use super::{BakeSettings, BakeWarning};
+use crate::scene::{Scene, Subject};
 use crate::trace::{Receiver, Tracer};
-use etagere::{AtlasAllocator, size2};
 use glam::{DVec2, Vec2};
 
-/// Largest page of a packed atlas [texels]: on a larger one the 16 bits per coordinate that Bevy keeps of a lightmap's
-/// rectangle would be off by more than a sixteenth of a texel.
-const MAX_PACKED_SIZE: u32 = 4096;
+/// Side of the blocks that texture formats compress [texels]: what every cell of an atlas is whole in.
+pub(super) const BLOCK: u32 = 4;
 
-/// Empty texels around each rectangle, so that two neighbours are filled without mixing.
-const GUTTER: u32 = repair::PASSES / 2;
+/// Empty texels around each rectangle: what bicubic filtering reads beyond it.
+pub(super) const GUTTER: u32 = 2;
 
 /// An object's place on a page.
 #[derive(Clone, Debug)]
@@ -54,24 +61,35 @@ pub(super) struct Atlas<'a> {
     pub(super) pages: Vec<[u32; 2]>,
     /// In the order of the receivers.
     pub(super) charts: Vec<Chart<'a>>,
+    /// Objects that got fewer texels than they asked for.
+    pub(super) warnings: Vec<BakeWarning>,
 }
 
 impl<'a> Atlas<'a> {
-    pub(super) fn new(scene: &'a Scene, tracer: &'a Tracer, settings: &BakeSettings) -> Result<Self, BakeError> {
+    /// Lays out the receivers of a scene that was laid out, which the tracer was compiled from.
+    pub(super) fn new(laid_out: &'a LaidOut<'_>, tracer: &'a Tracer, settings: &BakeSettings) -> Self {
+        let scene: &Scene = &laid_out.scene;
         let uv1 = |receiver: &Receiver| {
             scene.meshes[scene.instances[receiver.instance].mesh].uv1.as_deref().unwrap_or_default()
         };
         let receivers = tracer.receivers();
-        let sizes = match settings.layout {
-            Layout::Shared { size } => vec![[size; 2]; receivers.len()],
-            Layout::Packed => receivers
-                .iter()
-                .map(|receiver| packed_size(scene, tracer, receiver, uv1(receiver), settings.density))
-                .collect::<Result<_, _>>()?,
-        };
-        let (pages, places) = match settings.layout {
-            Layout::Shared { size } => (vec![[size; 2]], vec![(0, [0; 2]); receivers.len()]),
-            Layout::Packed => pack(&sizes),
+        let mut warnings = Vec::new();
+        let (sizes, pages, places) = match settings.layout {
+            Layout::Shared { size } => {
+                (vec![[size; 2]; receivers.len()], vec![[size; 2]], vec![(0, [0; 2]); receivers.len()])
+            }
+            Layout::Packed => {
+                let mut size_of = |receiver: &Receiver| {
+                    let of_charts = laid_out.sizes.get(&scene.instances[receiver.instance].id);
+                    of_charts.copied().unwrap_or_else(|| {
+                        let kept = Kept { scene, tracer, receiver, uv1: uv1(receiver) };
+                        kept.size(settings, &mut warnings)
+                    })
+                };
+                let sizes: Vec<[u32; 2]> = receivers.iter().map(&mut size_of).collect();
+                let (pages, places) = pack(&sizes, settings.page_limit());
+                (sizes, pages, places)
+            }
         };
         let charts = receivers
             .iter()
@@ -79,106 +97,83 @@ impl<'a> Atlas<'a> {
             .zip(places)
             .map(|((receiver, size), (page, origin))| Chart { receiver, page, origin, size, uv1: uv1(receiver) })
             .collect();
-        Ok(Self { pages, charts })
+        Self { pages, charts, warnings }
+    }
+
+    /// Share of the pages that so many covered texels are.
+    pub(super) fn fill(&self, covered: usize) -> f64 {
+        let area: f64 = self.pages.iter().map(|[width, height]| f64::from(*width) * f64::from(*height)).sum();
+        covered as f64 / area
     }
 }
 
-/// Width and height of an object's rectangle [texels].
-fn packed_size(
-    scene: &Scene,
-    tracer: &Tracer,
-    receiver: &Receiver,
-    uv1: &[Vec2],
-    default_density: f32,
-) -> Result<[u32; 2], BakeError> {
-    let instance = &scene.instances[receiver.instance];
-    let density = f64::from(instance.lightmap.and_then(|request| request.density).unwrap_or(default_density));
-    let mut area = 0.0;
-    let mut squared_stretch = DVec2::ZERO;
-    for (triangle, vertices) in receiver.vertices.iter().enumerate() {
-        let world = receiver.first_triangle + triangle as u32;
-        let [a, b, c] = tracer.vertices(world).map(|vertex| vertex.as_dvec3());
-        let [p, q, r] = vertices.map(|vertex| uv1[vertex as usize].as_dvec2());
-        let determinant = (q - p).perp_dot(r - p);
-        if determinant == 0.0 {
-            continue;
+/// An object that keeps its own UV1.
+struct Kept<'a> {
+    scene: &'a Scene,
+    tracer: &'a Tracer,
+    receiver: &'a Receiver,
+    uv1: &'a [Vec2],
+}
+
+impl Kept<'_> {
+    /// Width and height of its rectangle [texels].
+    fn size(&self, settings: &BakeSettings, warnings: &mut Vec<BakeWarning>) -> [u32; 2] {
+        let instance = &self.scene.instances[self.receiver.instance];
+        let asked = instance.lightmap.and_then(|request| request.density).unwrap_or(settings.density);
+        let exact = (self.squared_stretch() * f64::from(asked) * f64::from(asked)).map(f64::sqrt);
+        if exact.is_nan() {
+            return [2; 2];
         }
-        let along_u = ((b - a) * (r.y - p.y) - (c - a) * (q.y - p.y)) / determinant;
-        let along_v = ((c - a) * (q.x - p.x) - (b - a) * (r.x - p.x)) / determinant;
-        let triangle_area = tracer.area(world);
-        area += triangle_area;
-        squared_stretch += triangle_area * DVec2::new(along_u.length_squared(), along_v.length_squared());
+        let limit = settings.page_limit() - 2 * GUTTER;
+        // 1e-9 against a ceiling that rounding moves to the next texel.
+        let share = (f64::from(limit) * (1.0 - 1e-9) / exact.max_element()).min(1.0);
+        if exact.max_element().ceil() <= f64::from(limit) {
+            return exact.map(|texels| texels.ceil().max(2.0)).to_array().map(|texels| texels as u32);
+        }
+        let subject = Subject::Instance(instance.name.clone());
+        warnings.push(BakeWarning::LoweredDensity { subject, asked, got: (f64::from(asked) * share) as f32, limit });
+        (exact * share).map(|texels| texels.ceil().max(2.0)).to_array().map(|texels| texels as u32)
     }
-    let texels = (squared_stretch / area * density * density).map(f64::sqrt).map(|texels| texels.ceil().max(2.0));
-    let limit = MAX_PACKED_SIZE - 2 * GUTTER;
-    if texels.is_nan() || texels.max_element() > f64::from(limit) {
-        return Err(BakeError::AtlasOverflow {
-            name: instance.name.clone(),
-            width: texels.x as u64,
-            height: texels.y as u64,
-            limit,
-        });
+
+    /// Mean over the surface of the squared length of a step of 1 along u, and along v [m²].
+    fn squared_stretch(&self) -> DVec2 {
+        let mut area = 0.0;
+        let mut squared_stretch = DVec2::ZERO;
+        for (triangle, vertices) in self.receiver.vertices.iter().enumerate() {
+            let world = self.receiver.first_triangle + triangle as u32;
+            let [a, b, c] = self.tracer.vertices(world).map(|vertex| vertex.as_dvec3());
+            let [p, q, r] = vertices.map(|vertex| self.uv1[vertex as usize].as_dvec2());
+            let determinant = (q - p).perp_dot(r - p);
+            if determinant == 0.0 {
+                continue;
+            }
+            let along_u = ((b - a) * (r.y - p.y) - (c - a) * (q.y - p.y)) / determinant;
+            let along_v = ((c - a) * (q.x - p.x) - (b - a) * (r.x - p.x)) / determinant;
+            let triangle_area = self.tracer.area(world);
+            area += triangle_area;
+            squared_stretch += triangle_area * DVec2::new(along_u.length_squared(), along_v.length_squared());
+        }
+        squared_stretch / area
     }
-    Ok([texels.x as u32, texels.y as u32])
 }
 
 /// A page, and a rectangle's smallest corner on it [texels].
 type Place = (u32, [u32; 2]);
 
-/// Packs rectangles, in order of id, into as few and as small pages as shelves allow.
-fn pack(sizes: &[[u32; 2]]) -> (Vec<[u32; 2]>, Vec<Place>) {
-    let mut order: Vec<usize> = (0..sizes.len()).collect();
-    order.sort_by_key(|&index| (std::cmp::Reverse(sizes[index][1]), std::cmp::Reverse(sizes[index][0]), index));
+/// Packs rectangles, in order of id, into as few and as small pages as a skyline allows.
+fn pack(sizes: &[[u32; 2]], limit: u32) -> (Vec<[u32; 2]>, Vec<Place>) {
+    let cells: Vec<[u32; 2]> = sizes.iter().map(|size| size.map(|side| (side + 2 * GUTTER).div_ceil(BLOCK))).collect();
     let mut pages = Vec::new();
-    let mut places = vec![(0, [0; 2]); sizes.len()];
-    let mut rest = order;
-    while !rest.is_empty() {
-        let mut side = smallest_side(rest.iter().map(|&index| sizes[index]));
-        let placed = loop {
-            let placed = pack_page(sizes, &rest, side);
-            if placed.len() == rest.len() || side == MAX_PACKED_SIZE {
-                break placed;
-            }
-            side = (side + side.div_ceil(16)).next_multiple_of(4).min(MAX_PACKED_SIZE);
-        };
-        let page = pages.len() as u32;
-        let mut extent = [4, 4];
-        for &(index, origin) in &placed {
-            places[index] = (page, origin);
-            for axis in 0..2 {
-                extent[axis] = extent[axis].max((origin[axis] + sizes[index][axis] + GUTTER).next_multiple_of(4));
-            }
+    let mut places = Vec::with_capacity(sizes.len());
+    for ((page, corner), cell) in smallest::paged(&cells, limit / BLOCK).into_iter().zip(&cells) {
+        pages.resize(pages.len().max(page as usize + 1), [BLOCK; 2]);
+        for axis in 0..2 {
+            let end = (corner[axis] + cell[axis]) * BLOCK;
+            pages[page as usize][axis] = pages[page as usize][axis].max(end);
         }
-        pages.push(extent);
-        rest.retain(|index| !placed.iter().any(|(done, _)| done == index));
+        places.push((page, corner.map(|block| block * BLOCK + GUTTER)));
     }
     (pages, places)
-}
-
-/// The side of a square that might just hold the rectangles [texels].
-fn smallest_side(sizes: impl Iterator<Item = [u32; 2]>) -> u32 {
-    let mut area = 0.0;
-    let mut longest = 0;
-    for size in sizes {
-        let [width, height] = size.map(|extent| extent + 2 * GUTTER);
-        area += f64::from(width) * f64::from(height);
-        longest = longest.max(width).max(height);
-    }
-    (area.sqrt() as u32).max(longest).next_multiple_of(4).min(MAX_PACKED_SIZE)
-}
-
-/// Packs what fits into one square page; gives each rectangle's corner inside its gutter.
-fn pack_page(sizes: &[[u32; 2]], order: &[usize], side: u32) -> Vec<(usize, [u32; 2])> {
-    let mut allocator = AtlasAllocator::new(size2(side as i32, side as i32));
-    let mut placed = Vec::new();
-    for &index in order {
-        let [width, height] = sizes[index].map(|extent| (extent + 2 * GUTTER) as i32);
-        if let Some(allocation) = allocator.allocate(size2(width, height)) {
-            let corner = allocation.rectangle.min;
-            placed.push((index, [corner.x as u32 + GUTTER, corner.y as u32 + GUTTER]));
-        }
-    }
-    placed
 }
 
 #[cfg(test)]
@@ -190,14 +185,14 @@ mod tests {
     fn rectangles_keep_their_distance_and_stay_on_their_page() {
         let sizes: Vec<[u32; 2]> =
             (0..200).map(|key| [0, 1].map(|axis| 2 + (combine(key, axis) % 190) as u32)).collect();
-        let (pages, places) = pack(&sizes);
+        let (pages, places) = pack(&sizes, 4096);
         assert_eq!(pages.len(), 1);
         let area: u32 = sizes.iter().map(|[width, height]| width * height).sum();
         let fill = f64::from(area) / f64::from(pages[0][0] * pages[0][1]);
-        assert!(fill > 0.65, "{fill}");
+        assert!(fill > 0.8, "{fill}");
         for (index, &(page, origin)) in places.iter().enumerate() {
             for axis in 0..2 {
-                assert!(origin[axis] >= GUTTER);
+                assert_eq!(origin[axis] % BLOCK, GUTTER);
                 assert!(origin[axis] + sizes[index][axis] + GUTTER <= pages[page as usize][axis]);
             }
             for (other, &(_, other_origin)) in places.iter().enumerate().take(index) {
@@ -212,7 +207,7 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_goes_to_another_page() {
-        let (pages, places) = pack(&[[3000, 3000]; 3]);
+        let (pages, places) = pack(&[[3000, 3000]; 3], 4096);
         assert_eq!(pages.len(), 3);
         assert_eq!(places.iter().map(|(page, _)| *page).collect::<Vec<_>>(), [0, 1, 2]);
     }

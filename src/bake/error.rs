@@ -1,6 +1,7 @@
 //! Why a bake did not happen, and what it left out, sorted by who must act.
 
 use super::gather::Estimate;
+use super::unwrap::Uv1Fault;
 use crate::scene::{Fault, Subject};
 use crate::trace::{Census, Effect, EffectSet, MAX_VERTICES, Transport};
 use thiserror::Error;
@@ -43,18 +44,6 @@ pub enum BakeError {
         /// What is wrong with it and what to do.
         reason: String,
     },
-    /// The settings: an object needs more texels than a texture can have.
-    #[error("\"{name}\" needs {width} × {height} texels but a page has at most {limit} × {limit}; lower the density")]
-    AtlasOverflow {
-        /// The object.
-        name: String,
-        /// Width needed [texels].
-        width: u64,
-        /// Height needed [texels].
-        height: u64,
-        /// Largest page [texels].
-        limit: u32,
-    },
     /// The machine.
     #[error("cannot start the baking threads: {reason}")]
     Threads {
@@ -76,6 +65,66 @@ pub enum BakeWarning {
     /// A fault of the scene that costs an object only its lightmap.
     #[error("{0}")]
     NoLightmap(Fault),
+    /// A UV1 that cannot carry a lightmap; the mesh was unwrapped anew.
+    #[error("{subject} has a UV1 (TEXCOORD_1) that {fault}, so it was unwrapped anew; lay it out again to keep yours")]
+    Unwrapped {
+        /// The mesh.
+        subject: Subject,
+        /// What is wrong with its own UV1.
+        fault: Uv1Fault,
+    },
+    /// A mesh on which a good unwrap would have taken too long.
+    #[error(
+        "{subject} is too tangled for a good unwrap ({triangles} triangles, {charts} charts), so each of its planes \
+         got a chart of its own; give it a second UV set or simplify it"
+    )]
+    SimpleUnwrap {
+        /// The mesh.
+        subject: Subject,
+        /// How many triangles it has.
+        triangles: u64,
+        /// How many charts it got.
+        charts: u64,
+    },
+    /// A mesh in so many pieces that no page has room for them.
+    #[error(
+        "{subject} falls into {charts} charts, which is more than a page of {limit} × {limit} texels has room for, so \
+         it gets no lightmap; split it into several objects"
+    )]
+    TooManyCharts {
+        /// The object.
+        subject: Subject,
+        /// How many charts it has.
+        charts: u64,
+        /// Largest page [texels].
+        limit: u32,
+    },
+    /// A UV1 that cannot carry a lightmap and that a texture is looked up by, so that it cannot be laid out anew.
+    #[error(
+        "{subject} has a UV1 (TEXCOORD_1) that {fault}, and its material looks textures up by it, so it was kept as it \
+         is; give the textures UV0"
+    )]
+    Uv1InUse {
+        /// The object.
+        subject: Subject,
+        /// What is wrong with its UV1.
+        fault: Uv1Fault,
+    },
+    /// An object that needs more texels than a page can have.
+    #[error(
+        "{subject} asks for {asked} texels per metre and got {got}, since a page has room for {limit} × {limit} texels; \
+         split it into several objects for more"
+    )]
+    LoweredDensity {
+        /// The object.
+        subject: Subject,
+        /// What it asked for [1/m].
+        asked: f32,
+        /// What it got [1/m].
+        got: f32,
+        /// Most texels along a side of a page [texels].
+        limit: u32,
+    },
     /// Parts of a UV1 lie over each other, so that they share texels.
     #[error(
         "{subject} has overlapping UV1 in {texels} texels, which mix the light of different places; lay it out again"

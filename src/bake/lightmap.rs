@@ -1,17 +1,19 @@
 //! A lightmap: pages of texels and where each object lies on them, and how they are made.
 
-use super::atlas::{Atlas, Chart};
+use super::atlas::Atlas;
 use super::balance::energy_balance;
 use super::endless::refuse_endless_texels;
 use super::gather::Estimate;
+use super::layout::placements;
 use super::repair::{Field, TexelState, repair};
 use super::sites::{Covered, Site, Sites};
+use super::unwrap::{LaidOut, LaidOutMesh};
 use super::workers::Workers;
 use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, ProgressSink, Stage};
-use crate::artefact::{MeshHash, MeshLayout, StableId};
+use crate::artefact::StableId;
 use crate::scene::{Fault, Light, Scene};
 use crate::trace::{Compiled, Tracer, effect_of};
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use std::time::Instant;
 
 /// A finished lightmap bake.
@@ -21,7 +23,7 @@ pub struct Lightmap {
     pub pages: Vec<Page>,
     /// Where each object lies, ordered by id.
     pub placements: Vec<Placement>,
-    /// Meshes that the bake gave lightmap coordinates.
+    /// Meshes that were given a UV1.
     pub meshes: Vec<LaidOutMesh>,
     /// Ids of the lights whose direct light is in the texels.
     pub baked_lights: Vec<StableId>,
@@ -66,36 +68,9 @@ pub struct Placement {
     pub uv_min: [f32; 2],
     /// Largest corner.
     pub uv_max: [f32; 2],
-    /// Index into [`Lightmap::meshes`]; `None` for an object whose mesh keeps its own UV1.
+    /// Index into [`Lightmap::meshes`] of the mesh that takes the place of the object's own; `None` where that keeps its
+    /// UV1.
     pub mesh: Option<usize>,
-}
-
-/// A mesh with lightmap coordinates that the bake made, as a split copy of the scene's.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LaidOutMesh {
-    /// Index of the mesh in the scene.
-    pub source: usize,
-    /// What that mesh is known by.
-    pub hash: MeshHash,
-    /// For each vertex, the vertex of the source that it copies.
-    pub vertices: Vec<u32>,
-    /// For each vertex its lightmap coordinates, in the unit square; v grows downwards.
-    pub uv1: Vec<Vec2>,
-    /// Triangles, three indices each.
-    pub indices: Vec<u32>,
-    /// How many charts there are.
-    pub charts: u32,
-}
-
-impl From<&LaidOutMesh> for MeshLayout {
-    fn from(mesh: &LaidOutMesh) -> Self {
-        Self {
-            hash: mesh.hash,
-            vertices: mesh.vertices.clone(),
-            uv1: mesh.uv1.iter().map(Vec2::to_array).collect(),
-            indices: mesh.indices.clone(),
-        }
-    }
 }
 
 /// Bakes a lightmap of a scene.
@@ -113,9 +88,12 @@ pub fn bake_lightmap(
     settings.validate()?;
     let workers = Workers::new(settings.threads, progress, cancel)?;
     workers.announce(Stage::Prepare)?;
+    let laid_out = LaidOut::new(scene, settings, &workers)?;
+    let scene: &Scene = &laid_out.scene;
     let Compiled { tracer, faults, census } = Compiled::new(scene, &settings.transport);
+    let faults = laid_out.without_solved(faults);
     refuse_what_cannot_be_baked(&tracer, &faults)?;
-    let atlas = Atlas::new(scene, &tracer, settings)?;
+    let atlas = Atlas::new(&laid_out, &tracer, settings);
     let Sites { seen: sites, hidden, warnings: of_uv1 } = Sites::new(scene, &tracer, &atlas, settings, &workers)?;
     refuse_endless_texels(scene, &tracer, &settings.transport, &sites)?;
     let work = workers.gather(
@@ -129,17 +107,22 @@ pub fn bake_lightmap(
     repair(&mut fields, settings, &workers)?;
     let pages = pages(fields, &sites, &work.results);
     let of_transport = BakeWarning::of_transport(&settings.transport, &census);
-    let warnings = faults.into_iter().map(BakeWarning::from).chain(of_uv1).chain(of_transport);
+    let of_layout = laid_out.warnings.iter().chain(&atlas.warnings).cloned();
+    let warnings = faults.into_iter().map(BakeWarning::from).chain(of_layout).chain(of_uv1).chain(of_transport);
     let report = BakeReport {
         energy_balance: balance,
         hidden: hidden.len() as u64,
+        pages: atlas.pages.len() as u32,
+        fill: atlas.fill(sites.len()),
+        unwrapped: laid_out.mesh_of.len() as u64,
         ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings)
     };
     let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));
     let baked_lights = scene.lights.iter().filter(is_baked).map(|light| light.id().clone());
     let mut baked_lights: Vec<StableId> = baked_lights.collect();
     baked_lights.sort();
-    Ok(Lightmap { placements: placements(scene, &atlas), meshes: Vec::new(), pages, baked_lights, report })
+    let placements = placements(&laid_out, &atlas);
+    Ok(Lightmap { placements, pages, meshes: laid_out.meshes, baked_lights, report })
 }
 
 /// The pages as measured.
@@ -181,21 +164,6 @@ fn pages(fields: Vec<Field>, sites: &[Site], estimates: &[Estimate]) -> Vec<Page
         page.is_overlapped[covered.index as usize] = covered.is_overlapped;
     }
     pages
-}
-
-fn placements(scene: &Scene, atlas: &Atlas<'_>) -> Vec<Placement> {
-    let place = |chart: &Chart<'_>| {
-        let page = atlas.pages[chart.page as usize];
-        let uv = |texel: [u32; 2]| [0, 1].map(|axis| (f64::from(texel[axis]) / f64::from(page[axis])) as f32);
-        Placement {
-            id: scene.instances[chart.receiver.instance].id.clone(),
-            page: chart.page,
-            uv_min: uv(chart.origin),
-            uv_max: uv([0, 1].map(|axis| chart.origin[axis] + chart.size[axis])),
-            mesh: None,
-        }
-    };
-    atlas.charts.iter().map(place).collect()
 }
 
 /// Refuses a scene in which a bake would have nothing to do.

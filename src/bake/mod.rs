@@ -2,7 +2,8 @@
 //!
 //! A lightmap is made in five steps, [`bake_lightmap`] in a screen:
 //!
-//! 1. the scene is compiled for rays; what is at fault is left out and named;
+//! 1. `unwrap` gives every mesh without a valid UV1 one, and the scene is compiled for rays; what is at fault is left
+//!    out and named;
 //! 2. `atlas` gives every object its rectangle of texels;
 //! 3. `raster` finds the texels that each triangle covers, however little of them, and `sites` lists them;
 //! 4. `gather` traces paths from the covered part of each texel, in parallel, in independently scrambled replicates
@@ -17,6 +18,7 @@ mod charts;
 mod endless;
 mod error;
 mod gather;
+mod layout;
 mod lightmap;
 mod meter;
 mod picture;
@@ -28,12 +30,14 @@ mod report;
 mod settings;
 mod sites;
 mod texel;
+mod unwrap;
 mod validity;
 mod workers;
 
 pub use error::{BakeError, BakeWarning};
 pub use gather::REPLICATES;
-pub use lightmap::{LaidOutMesh, Lightmap, Page, Placement, bake_lightmap};
+pub use layout::{TexelLayout, unwrap_meshes};
+pub use lightmap::{Lightmap, Page, Placement, bake_lightmap};
 pub use meter::{Measurement, MeterPoint, MeterReading, MeterSettings, measure_irradiance};
 pub use picture::{Picture, PictureSettings, render_picture};
 pub use plan::{BakePlan, PlannedEffect, Prediction};
@@ -41,3 +45,4 @@ pub use progress::{CancelToken, Progress, ProgressSink, Stage};
 pub use repair::TexelState;
 pub use report::{BakeReport, RelativeError};
 pub use settings::{BakeSettings, Layout};
+pub use unwrap::{LaidOutMesh, UnwrapMethod, Uv1Fault};

@@ -30,6 +30,12 @@ pub struct BakeReport {
     pub clamped_light: Option<f64>,
     /// Effects that were forced on or off.
     pub forced: ForcedEffects,
+    /// Textures; 0 where no lightmap was made.
+    pub pages: u32,
+    /// Share of the textures' area that is covered texels.
+    pub fill: f64,
+    /// Objects whose mesh got a UV1.
+    pub unwrapped: u64,
     /// Texels whose value a texture format could not hold.
     pub clamped: u64,
     /// What was left out, and what to do about it.
@@ -66,6 +72,9 @@ impl BakeReport {
             energy_balance: None,
             clamped_light: clamped_share(&work.results, transport.clamp),
             forced: transport.effects,
+            pages: 0,
+            fill: 0.0,
+            unwrapped: 0,
             clamped: 0,
             warnings: warnings.chain(BakeWarning::of_paths(&work.results)).collect(),
         }

@@ -7,6 +7,10 @@ use std::num::NonZeroUsize;
 /// Largest shared map that may be asked for [texels].
 const MAX_SHARED_SIZE: u32 = 8192;
 
+/// Sizes that a page of a packed atlas may be limited to [texels]. On a larger one the 16 bits per coordinate that
+/// Bevy keeps of a lightmap's rectangle would be off by more than a sixteenth of a texel.
+const PAGE_SIZES: std::ops::RangeInclusive<u32> = 64..=4096;
+
 /// Where the texels of a lightmap go.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Layout {
@@ -31,6 +35,9 @@ pub struct BakeSettings {
     pub density: f32,
     /// Where the texels go.
     pub layout: Layout,
+    /// Largest width and height of a page, 64 to 4096 [texels]; for [`Layout::Packed`]. An object that needs a larger
+    /// one gets fewer texels per metre, and a warning.
+    pub max_page_size: u32,
     /// Threads that trace; `None` for all cores.
     pub threads: Option<NonZeroUsize>,
 }
@@ -42,6 +49,7 @@ impl Default for BakeSettings {
             samples_per_texel: 256,
             density: 16.0,
             layout: Layout::default(),
+            max_page_size: *PAGE_SIZES.end(),
             threads: None,
         }
     }
@@ -57,11 +65,19 @@ impl BakeSettings {
         if !(self.density.is_finite() && self.density > 0.0) {
             return refuse("density", "it must be a positive number of texels per metre");
         }
+        if !PAGE_SIZES.contains(&self.max_page_size) {
+            return refuse("page size", "a page is 64 to 4096 texels wide");
+        }
         match self.layout {
             Layout::Shared { size } if size == 0 || size > MAX_SHARED_SIZE => {
                 refuse("size", "a shared map is 1 to 8192 texels wide")
             }
             _ => Ok(()),
         }
+    }
+
+    /// Largest side of a page in whole blocks of 4 × 4 [texels].
+    pub(super) fn page_limit(&self) -> u32 {
+        self.max_page_size / super::atlas::BLOCK * super::atlas::BLOCK
     }
 }

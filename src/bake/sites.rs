@@ -43,16 +43,12 @@ impl Site {
         transport: &Transport,
         tally: &mut Tally,
     ) -> Option<Vec3> {
-        let anchor = &self.footing.anchor;
-        let drawn = || {
-            let [u, v, ..] = sobol.draw(Dimensions::Start);
-            self.covered.texel.start(tracer, Vec2::new(u, v))
-        };
         match start {
-            Start::Anywhere => Some(tracer.diffuse_radiance(anchor, sobol, transport, tally)),
+            Start::Anywhere => Some(tracer.diffuse_radiance(&self.footing.anchor, sobol, transport, tally)),
             Start::Drawn => {
-                let drawn = drawn();
-                let is_reached = tracer.is_open_between(anchor, &drawn);
+                let [u, v, ..] = sobol.draw(Dimensions::Start);
+                let drawn = self.covered.texel.start(tracer, Vec2::new(u, v));
+                let is_reached = self.footing.reaches(tracer, &drawn);
                 is_reached.then(|| tracer.diffuse_radiance(&drawn, sobol, transport, tally))
             }
         }
@@ -74,7 +70,8 @@ impl Site {
 
     /// Memory that it holds, its estimate included [bytes].
     pub(super) fn memory_bytes(&self) -> usize {
-        size_of::<Self>() + size_of::<Estimate>() + self.covered.texel.heap_bytes()
+        let others = size_of_val(&*self.footing.others);
+        size_of::<Self>() + size_of::<Estimate>() + self.covered.texel.heap_bytes() + others
     }
 }
 

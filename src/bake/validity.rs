@@ -31,16 +31,26 @@ const PROBES: u64 = 32;
 const PROBE_BOUNCES: u32 = 32;
 
 /// What a texel stands on.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Footing {
     /// The place that stands for the texel.
     pub(super) anchor: PathStart,
+    /// More places of the same part, where not all of it can be seen from the anchor.
+    pub(super) others: Box<[PathStart]>,
     /// Whether the texel lies inside of bodies, and in the dark.
     pub(super) is_hidden: bool,
     /// Whether a part of the texel that is seen cannot be reached from there.
     pub(super) is_split: bool,
     /// The neighbours that can be reached from here.
     pub(super) links: Links,
+}
+
+impl Footing {
+    /// Whether one can go from the anchor to a place on the texel without passing through a surface.
+    pub(super) fn reaches(&self, tracer: &Tracer, place: &PathStart) -> bool {
+        tracer.is_open_between(&self.anchor, place)
+            || self.others.iter().any(|other| tracer.is_open_between(other, place))
+    }
 }
 
 /// The neighbours of a texel, in its own chart, that can be reached without passing through a surface.
@@ -103,7 +113,8 @@ pub(super) fn footings(
             let other = neighbour(number, step)?;
             let there = &footings[other];
             let is_seen = !here.is_hidden && !there.is_hidden;
-            (is_seen && tracer.is_open_between(&here.anchor, &there.anchor)).then_some(other)
+            let is_reached = is_seen && (here.reaches(tracer, &there.anchor) || there.reaches(tracer, &here.anchor));
+            is_reached.then_some(other)
         };
         (!cancel.is_cancelled()).then(|| STEPS.map(open))
     })?;
@@ -121,32 +132,38 @@ pub(super) fn footings(
 fn footing(tracer: &Tracer, covered: &Covered, settings: &BakeSettings) -> Footing {
     let parts = parts(tracer, &covered.texel);
     // Within a part all is inside of bodies or nothing.
-    let enclosed: Vec<bool> = parts.iter().map(|part| tracer.is_enclosed(&part.anchor)).collect();
-    let best = (0..parts.len()).max_by_key(|&part| (!enclosed[part], parts[part].size, Reverse(part)));
+    let enclosed: Vec<bool> = parts.iter().map(|part| tracer.is_enclosed(&part[0])).collect();
+    let best = (0..parts.len()).max_by_key(|&part| (!enclosed[part], parts[part].len(), Reverse(part)));
     let best = best.unwrap_or(0);
-    let anchor = parts[best].anchor;
+    let anchor = parts[best][0];
     let is_hidden = enclosed[best] && is_dark(tracer, &anchor, covered.key, &settings.transport);
     let is_split = (0..parts.len()).any(|part| part != best && !enclosed[part]);
-    Footing { anchor, is_hidden, is_split, links: Links::default() }
+    // Where all is one part and in sight of its first place, that is enough.
+    let others = if parts.len() == 1 && parts[0].len() == 1 { Box::default() } else { parts[best][1..].into() };
+    Footing { anchor, others, is_hidden, is_split, links: Links::default() }
 }
 
-/// Places of a texel that see each other.
-struct Part {
-    anchor: PathStart,
-    size: usize,
-}
-
-/// The parts of a texel. The first place of each stands for it.
-fn parts(tracer: &Tracer, texel: &Texel) -> Vec<Part> {
-    let mut parts: Vec<Part> = Vec::new();
-    for index in 0..CANDIDATES {
+/// The parts of a texel: places between which one can go by way of one another. One place alone stands for the texel
+/// if all the others can be seen from it.
+fn parts(tracer: &Tracer, texel: &Texel) -> Vec<Vec<PathStart>> {
+    let place = |index: usize| {
         // From the middle outwards (Roberts 2018).
         let place = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_2) * index as f64 + 0.5;
-        let start = texel.inner_start(tracer, (place - place.floor()).as_vec2());
-        match parts.iter_mut().find(|part| tracer.is_open_between(&part.anchor, &start)) {
-            Some(part) => part.size += 1,
-            None => parts.push(Part { anchor: start, size: 1 }),
-        }
+        texel.inner_start(tracer, (place - place.floor()).as_vec2())
+    };
+    let places: Vec<PathStart> = (0..CANDIDATES).map(place).collect();
+    if places.iter().all(|place| tracer.is_open_between(&places[0], place)) {
+        return vec![vec![places[0]]];
+    }
+    let mut parts: Vec<Vec<PathStart>> = Vec::new();
+    for place in places {
+        let sees = |part: &Vec<PathStart>| part.iter().any(|other| tracer.is_open_between(other, &place));
+        let (seen, mut rest): (Vec<_>, Vec<_>) = parts.into_iter().partition(sees);
+        // What is seen from one place is one part.
+        let mut joined: Vec<PathStart> = seen.into_iter().flatten().collect();
+        joined.push(place);
+        rest.push(joined);
+        parts = rest;
     }
     parts
 }

@@ -65,6 +65,7 @@ pub(super) fn cut_quad() -> LaidOutMesh {
         uv1: [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5], [0.5, 1.0], [1.0, 0.5], [1.0, 1.0]].map(Vec2::from).to_vec(),
         indices: vec![0, 1, 2, 3, 4, 5],
         charts: 2,
+        ..LaidOutMesh::default()
     }
 }
 

@@ -7,7 +7,7 @@ use super::Field;
 use glam::Vec3;
 
 /// Passes: bicubic filtering reads two texels beyond a chart, and block compression mixes four.
-pub(in crate::bake) const PASSES: u32 = 4;
+const PASSES: u32 = 4;
 
 /// Fills up to [`PASSES`] rings of texels around the measured ones, in place.
 pub(super) fn dilate(field: &mut Field) {

@@ -10,7 +10,6 @@ mod barrier;
 mod dilate;
 mod field;
 
-pub(super) use dilate::PASSES;
 pub(super) use field::Field;
 pub use field::TexelState;
 

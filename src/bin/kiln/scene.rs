@@ -62,6 +62,7 @@ pub(crate) fn bake_settings(scene: &SceneArgs, layout: &LayoutArgs) -> Result<Ba
         density: layout.density,
         layout: layout_kind,
         threads: scene.threads,
+        ..BakeSettings::default()
     };
     settings.validate()?;
     Ok(settings)

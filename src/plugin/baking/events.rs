@@ -112,6 +112,7 @@ impl BakeLightmaps {
                 LightmapLayout::Shared { size } => Layout::Shared { size },
             },
             threads: usize::try_from(self.threads).ok().and_then(NonZeroUsize::new),
+            ..BakeSettings::default()
         }
     }
 }

@@ -252,6 +252,7 @@ mod tests {
             uv1: vec![Vec2::splat(uv), Vec2::X, Vec2::Y],
             indices: vec![0, 1, 2],
             charts: 1,
+            ..LaidOutMesh::default()
         };
         let placement =
             Placement { id: StableId::new("a"), page: 0, uv_min: [0.0; 2], uv_max: [1.0; 2], mesh: Some(0) };

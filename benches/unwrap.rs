@@ -1,0 +1,2 @@
+//! What an unwrap takes, from a thousand to a million triangles.
+fn main() {}

@@ -1,0 +1,118 @@
+//! A surface cut into charts: few, compact ones where it can be, and simple ones where that would take too long.
+
+use super::flatten::{Limits, alone, along, flatten, is_sound};
+use super::merge::merge;
+use super::patch::{Chart, Patch};
+use super::split::split;
+use super::surface::Surface;
+use super::work::Work;
+use crate::bake::CancelToken;
+use rayon::prelude::*;
+
+/// Triangles beyond which nothing but the simple unwrap is tried.
+const MOST_TRIANGLES: usize = 4_000_000;
+
+/// Cosine within which neighbours lie in one plane.
+const PLANAR: f64 = 1.0 - 1e-8;
+
+/// How a mesh was unwrapped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum UnwrapMethod {
+    /// Few, compact charts.
+    #[default]
+    Charts,
+    /// One chart for each planar region, at worst one for each triangle: the limit on work was reached in some part.
+    Simple,
+}
+
+/// The charts of a surface, in an order of its own; `None` once cancelled.
+pub(super) fn charts(surface: &Surface, cancel: &CancelToken) -> Option<(Vec<Chart>, UnwrapMethod)> {
+    let budget = if surface.len() > MOST_TRIANGLES { Budget::None } else { Budget::PerTriangle };
+    charts_within(surface, budget, cancel)
+}
+
+/// How much work may go into good charts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Budget {
+    None,
+    PerTriangle,
+}
+
+pub(super) fn charts_within(
+    surface: &Surface,
+    budget: Budget,
+    cancel: &CancelToken,
+) -> Option<(Vec<Chart>, UnwrapMethod)> {
+    let patches = Patch::whole(surface);
+    // Small parts are too many to be handed out one by one.
+    let parts: Vec<Option<(Vec<Chart>, UnwrapMethod)>> = patches
+        .into_par_iter()
+        .with_min_len(16)
+        .map(|patch| {
+            let mut work = Work::new(if budget == Budget::None { 0 } else { patch.len() }, cancel);
+            if budget == Budget::None {
+                return simple(surface, &patch, cancel).map(|charts| (charts, UnwrapMethod::Simple));
+            }
+            of_patch(surface, patch, &mut work, cancel)
+        })
+        .collect();
+    let mut all = Vec::new();
+    let mut method = UnwrapMethod::Charts;
+    for part in parts {
+        let (charts, of_part) = part?;
+        all.extend(charts);
+        if of_part == UnwrapMethod::Simple {
+            method = of_part;
+        }
+    }
+    Some((all, method))
+}
+
+/// The charts of a connected patch.
+fn of_patch(
+    surface: &Surface,
+    patch: Patch,
+    work: &mut Work<'_>,
+    cancel: &CancelToken,
+) -> Option<(Vec<Chart>, UnwrapMethod)> {
+    let mut charts = Vec::new();
+    let mut method = UnwrapMethod::Charts;
+    let mut open = vec![patch.clone()];
+    let whole = patch;
+    while let Some(patch) = open.pop() {
+        if work.is_cancelled() {
+            return None;
+        }
+        if patch.len() == 1 {
+            charts.push(alone(surface, patch.triangles[0]));
+        } else if let Some(chart) = flatten(surface, &patch, &Limits::ALONE, work) {
+            charts.push(chart);
+        } else if let Some(parts) = split(surface, &patch, work).filter(|parts| parts.len() > 1) {
+            open.extend(parts.into_iter().rev());
+        } else {
+            method = UnwrapMethod::Simple;
+            charts.extend(simple(surface, &patch, cancel)?);
+        }
+    }
+    let charts = merge(surface, &whole, charts, &mut Work::new(whole.len(), cancel));
+    (!cancel.is_cancelled()).then_some((charts, method))
+}
+
+/// One chart for each planar region of a patch that is sound, and one for each triangle of the others.
+fn simple(surface: &Surface, patch: &Patch, cancel: &CancelToken) -> Option<Vec<Chart>> {
+    let normal = |triangle: u32| surface.normals[patch.triangles[triangle as usize] as usize];
+    let labels = patch.connected(|a, b| normal(a).dot(normal(b)) > PLANAR);
+    let mut charts = Vec::new();
+    for region in patch.split_by(&labels) {
+        if cancel.is_cancelled() {
+            return None;
+        }
+        let (axis, least) = region.cone(surface);
+        let seen = (least > 0.999).then(|| along(surface, &region, axis));
+        match seen.filter(|seen| is_sound(surface, seen, &Limits::ALONE, &mut Work::new(region.len(), cancel))) {
+            Some(chart) => charts.push(chart),
+            None => charts.extend(region.triangles.iter().map(|&triangle| alone(surface, triangle))),
+        }
+    }
+    Some(charts)
+}

@@ -1,0 +1,96 @@
+//! Every mesh gets a UV1 or is refused by name: charts overlap nowhere, with the border that filtering reads, and the
+//! same mesh gives the same bits.
+
+mod check;
+mod shapes;
+
+use bevy_kiln::artefact::StableId;
+use bevy_kiln::bake::{BakeSettings, BakeWarning, CancelToken, TexelLayout, UnwrapMethod};
+use bevy_kiln::scene::{Instance, LightmapRequest, Material, Mesh, Scene};
+use check::judge;
+use glam::{Affine3A, Vec3};
+use shapes::*;
+
+fn instance(id: &str, mesh: usize, world_from_local: Affine3A) -> Instance {
+    Instance {
+        id: StableId::new(id),
+        name: id.into(),
+        mesh,
+        material: 0,
+        world_from_local,
+        lightmap: Some(LightmapRequest::default()),
+    }
+}
+
+fn alone(mesh: Mesh) -> Scene {
+    Scene {
+        instances: vec![instance(&mesh.name.clone(), 0, Affine3A::IDENTITY)],
+        meshes: vec![mesh],
+        materials: vec![Material::diffuse("grey", Vec3::splat(0.5))],
+        sky_radiance: Vec3::ONE,
+        ..Scene::default()
+    }
+}
+
+fn settings(density: f32) -> BakeSettings {
+    BakeSettings { density, ..BakeSettings::default() }
+}
+
+fn layout(scene: &Scene, settings: &BakeSettings) -> TexelLayout {
+    TexelLayout::for_scene(scene, settings, &CancelToken::default()).unwrap()
+}
+
+/// What a mesh is to become.
+struct Case {
+    mesh: Mesh,
+    density: f32,
+    charts: std::ops::RangeInclusive<u64>,
+    /// Mean and worst.
+    stretch: [f64; 2],
+}
+
+fn case(mesh: Mesh, density: f32, charts: std::ops::RangeInclusive<u64>, stretch: [f64; 2]) -> Case {
+    Case { mesh, density, charts, stretch }
+}
+
+fn cases() -> Vec<Case> {
+    let quad = mesh("quad", vec![Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y], vec![0, 1, 2, 0, 2, 3]);
+    vec![
+        case(quad, 16.0, 1..=1, [1.01, 1.01]),
+        case(sphere(32, 16), 16.0, 2..=10, [1.15, 1.7]),
+        case(sphere(96, 48), 32.0, 2..=10, [1.15, 1.7]),
+        case(capsule(32), 16.0, 3..=14, [1.15, 1.7]),
+        case(torus(48, 24), 16.0, 4..=24, [1.15, 1.7]),
+        case(tube(32), 16.0, 1..=1, [1.03, 1.05]),
+        case(cone(32), 16.0, 1..=2, [1.05, 1.1]),
+        case(bent_sheet(24), 16.0, 1..=1, [1.03, 1.05]),
+        case(pipe(24, 12), 16.0, 2..=12, [1.15, 1.7]),
+        case(moebius(48), 16.0, 1..=8, [1.15, 1.7]),
+        case(cuboid("box", Vec3::ZERO, Vec3::ONE, 1), 16.0, 6..=6, [1.01, 1.01]),
+        case(cuboid("fine box", Vec3::ZERO, Vec3::ONE, 20), 16.0, 6..=6, [1.01, 1.01]),
+        case(terrain(80), 8.0, 1..=20, [1.2, 1.7]),
+        case(bumpy(64, 32), 16.0, 2..=200, [1.25, 2.5]),
+        case(chair(), 64.0, 36..=36, [1.3, 1.5]),
+        case(stairs(10), 16.0, 40..=60, [1.2, 2.0]),
+        case(arch(), 16.0, 4..=4, [1.05, 1.1]),
+        case(clutter(2000), 16.0, 2000..=4000, [1.3, 3.0]),
+        case(needles(300), 16.0, 1..=1, [1.05, 1.1]),
+        case(strip(40), 16.0, 1..=1, [1.01, 1.01]),
+    ]
+}
+
+#[test]
+fn every_mesh_is_unwrapped() {
+    for case in cases() {
+        let name = case.mesh.name.clone();
+        let scene = alone(case.mesh);
+        let layout = layout(&scene, &settings(case.density));
+        let figures = judge(&scene, &layout, case.density.into()).unwrap_or_else(|fault| panic!("{name}: {fault}"));
+        println!("{name:>12} {figures:?}");
+        assert_eq!(layout.warnings, [], "{name}");
+        assert_eq!(layout.meshes[0].method, UnwrapMethod::Charts, "{name}");
+        assert!(case.charts.contains(&figures.charts), "{name}: {figures:?}");
+        assert_eq!(u64::from(layout.meshes[0].charts), figures.charts, "{name}");
+        assert!(figures.stretch <= case.stretch[0] && figures.worst <= case.stretch[1], "{name}: {figures:?}");
+    }
+}
