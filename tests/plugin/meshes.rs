@@ -1,9 +1,10 @@
 //! Meshes that a bake laid out anew, in a game that shows the baked folder: on, shared, off again, and refused where
 //! they are not the ones that were baked.
 
-use super::{app, count, run_until};
+use super::{app, count, run_until, run_until_baked, small, texels};
 use bevy::asset::LoadState;
 use bevy::ecs::system::RunSystemOnce;
+use bevy::light::RectLight;
 use bevy::mesh::{Indices, VertexAttributeValues};
 use bevy::pbr::Lightmap;
 use bevy::prelude::*;
@@ -49,6 +50,7 @@ fn apart(app: &mut App, shift: f32) -> LaidOutMesh {
         indices: (0..corners).collect(),
         vertices,
         charts: corners / 3,
+        ..LaidOutMesh::default()
     }
 }
 
@@ -245,4 +247,56 @@ fn a_damaged_or_missing_file_of_meshes_is_named() {
         assert!(error.to_string().contains(sentence), "{error}");
         assert_eq!(count::<Lightmap>(app.world_mut()), 0);
     }
+}
+
+/// A lamp above the room, which is left where it was.
+fn light_up(app: &mut App) {
+    let down = Transform::from_xyz(0.0, 3.0, 0.0).looking_to(Vec3::NEG_Y, Vec3::X);
+    app.world_mut().spawn((Name::new("lamp"), RectLight { intensity: 100.0, ..default() }, down));
+    app.update();
+}
+
+/// What the mesh that an entity shows is made of.
+fn shape_of(app: &mut App, name: &str) -> Mesh {
+    let mesh = mesh_of(app, name);
+    app.world().resource::<Assets<Mesh>>().get(&mesh).unwrap().clone()
+}
+
+#[test]
+fn baking_twice_gives_the_same_bits_and_a_shipped_game_shows_the_same_meshes() {
+    let asked = || BakeLightmaps { layout: LightmapLayout::Packed, density: 4.0, ..small() };
+    let folder = TempDir::new().unwrap();
+    let mut app = game(folder.path());
+    light_up(&mut app);
+    let own = ["east", "west", "floor"].map(|name| mesh_of(&mut app, name));
+    app.world_mut().trigger(asked());
+    let first = run_until_baked(&mut app, 1);
+    assert_eq!(first.entities, 3);
+    let worn = mesh_of(&mut app, "east");
+    assert!(worn != own[0] && worn == mesh_of(&mut app, "west"));
+
+    app.world_mut().trigger(asked());
+    let second = run_until_baked(&mut app, 2);
+    assert_eq!(second.lightmap.pages, first.lightmap.pages);
+    assert_eq!(second.lightmap.meshes, first.lightmap.meshes);
+    assert_eq!(mesh_of(&mut app, "east"), worn, "the same mesh needs no other copy");
+
+    write_lightmap(&first.lightmap, "room", &folder.path().join("baked"), OutputFormat::Rgba16f).unwrap();
+    let mut shipped = game(folder.path());
+    show(&mut shipped, "baked/kiln.ron");
+    run_until_found(&mut shipped, 3);
+    for name in ["east", "west", "floor"] {
+        assert_eq!(shape_of(&mut shipped, name), shape_of(&mut app, name), "{name}");
+    }
+    let shown = |app: &mut App| texels(app.world_mut());
+    run_until(&mut shipped, "the textures", |world| {
+        let mut lightmaps = world.query::<&Lightmap>();
+        lightmaps.iter(world).all(|lightmap| world.resource::<Assets<Image>>().contains(&lightmap.image))
+    });
+    assert_eq!(shown(&mut shipped), shown(&mut app));
+
+    app.world_mut().trigger(ClearLightmaps);
+    app.update();
+    assert_eq!(["east", "west", "floor"].map(|name| mesh_of(&mut app, name)), own);
+    assert_eq!(count::<Lightmap>(app.world_mut()), 0);
 }

@@ -81,6 +81,7 @@ fn write(app: &mut App, dir: &Path, format: OutputFormat) {
         indices: (0..vertices.len() as u32).collect(),
         vertices,
         charts: 2,
+        ..LaidOutMesh::default()
     };
     let texels: Vec<Vec3> = (0..32 * 16).map(|at| if at % 32 < 16 { DARK } else { BRIGHT }).collect();
     let page = Page {

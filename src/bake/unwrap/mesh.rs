@@ -12,7 +12,7 @@ use glam::Vec2;
 pub struct LaidOutMesh {
     /// Index into [`Scene::meshes`](crate::scene::Scene::meshes) of the scene that was baked.
     pub source: usize,
-    /// What that mesh is known by.
+    /// What that mesh is known by when a game is to show this one in its place.
     pub hash: MeshHash,
     /// Per vertex: the vertex of the source that it copies. Ascending, but for triangles without area.
     pub vertices: Vec<u32>,
@@ -24,17 +24,6 @@ pub struct LaidOutMesh {
     pub charts: u32,
     /// How they were made.
     pub method: UnwrapMethod,
-}
-
-impl From<&LaidOutMesh> for MeshLayout {
-    fn from(mesh: &LaidOutMesh) -> Self {
-        Self {
-            hash: mesh.hash,
-            vertices: mesh.vertices.clone(),
-            uv1: mesh.uv1.iter().map(Vec2::to_array).collect(),
-            indices: mesh.indices.clone(),
-        }
-    }
 }
 
 impl LaidOutMesh {
@@ -110,6 +99,17 @@ impl LaidOutMesh {
             uv1: Some(self.uv1.clone()),
             colours: source.colours.as_ref().map(|colours| taken(vertices, colours)),
             tangents: source.tangents.as_ref().map(|tangents| taken(vertices, tangents)),
+        }
+    }
+}
+
+impl From<&LaidOutMesh> for MeshLayout {
+    fn from(mesh: &LaidOutMesh) -> Self {
+        Self {
+            hash: mesh.hash,
+            vertices: mesh.vertices.clone(),
+            uv1: mesh.uv1.iter().map(Vec2::to_array).collect(),
+            indices: mesh.indices.clone(),
         }
     }
 }

@@ -133,6 +133,9 @@ pub(crate) struct LayoutArgs {
     /// Width and height of a shared map [texels]
     #[arg(long, value_name = "N", required_if_eq("layout", "shared"))]
     pub(crate) size: Option<u32>,
+    /// Largest width and height of a texture, 64 to 4096 [texels]
+    #[arg(long, value_name = "N", default_value_t = 4096, allow_hyphen_values = true)]
+    pub(crate) page_size: u32,
     /// Paths that start in each texel
     #[arg(long, value_name = "N", default_value = "256", value_parser = parse::count, allow_hyphen_values = true)]
     pub(crate) spp: NonZeroU32,
@@ -157,7 +160,8 @@ pub(crate) struct BakeArgs {
     pub(crate) error: Option<String>,
     #[arg(long, hide = true)]
     pub(crate) time: Option<String>,
-    #[arg(long, hide = true)]
+    /// Leave the noise in the texels
+    #[arg(long)]
     pub(crate) no_denoise: bool,
     #[arg(long, hide = true)]
     pub(crate) resume: bool,

@@ -5,14 +5,15 @@ use crate::failure::Failure;
 use crate::progress::Show;
 use crate::scene;
 use crate::talk::{Talk, warn};
-use bevy_kiln::bake::{BakePlan, BakeReport, CancelToken, bake_lightmap};
+use bevy_kiln::bake::{BakePlan, BakeReport, BakeSettings, CancelToken, Denoise, Jump, RelativeError, bake_lightmap};
 use bevy_kiln::output::{WrittenLightmap, write_lightmap};
 use bevy_kiln::trace::Effect;
 use serde_json::json;
 
 pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> {
     let talk = Talk::beside(args.json);
-    let settings = scene::bake_settings(&args.scene, &args.layout)?;
+    let denoise = if args.no_denoise { Denoise::Off } else { Denoise::default() };
+    let settings = BakeSettings { denoise, ..scene::bake_settings(&args.scene, &args.layout)? };
     if args.output.is_file() {
         let path = args.output.display();
         return Err(Failure::Failed(format!("{path} is a file, not a folder; name another folder or move it away")));
@@ -39,6 +40,7 @@ pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> 
     warn(&late);
     warnings.extend(known.into_iter().chain(late));
     talk.report("texels", report);
+    talk.repair(report);
     if report.energy_balance.is_none() {
         talk.say("  energy balance: none (light escapes or is cut, or not all surfaces are diffuse)");
     }
@@ -54,14 +56,25 @@ pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> 
 }
 
 fn summary(report: &BakeReport, written: &WrittenLightmap, warnings: &[String]) -> serde_json::Value {
-    let error = &report.relative_stderr;
+    let error = |error: &RelativeError| json!({ "mean": error.mean, "p95": error.p95, "max": error.max });
     json!({
         "texels": report.texels,
+        "hidden": report.hidden,
+        "pages": report.pages,
+        "fill": report.fill,
+        "unwrapped": report.unwrapped,
         "samples": report.samples,
         "rays": report.rays,
         "cpu_seconds": report.cpu_seconds,
         "wall_seconds": report.wall_seconds,
-        "relative_stderr": { "mean": error.mean, "p95": error.p95, "max": error.max },
+        "relative_stderr": error(&report.relative_stderr),
+        "denoised": report.denoised.map(|denoised| {
+            json!({ "before": error(&denoised.before), "after": error(&denoised.after) })
+        }),
+        "seams": report.seams.map(|seams| {
+            let jump = |jump: Jump| json!({ "p99": jump.p99, "max": jump.max });
+            json!({ "joints": seams.joints, "before": jump(seams.before), "after": jump(seams.after) })
+        }),
         "energy_balance": report.energy_balance,
         "clamped_light": report.clamped_light,
         "forced": {

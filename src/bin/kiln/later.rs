@@ -9,7 +9,6 @@ pub(crate) fn refuse(verb: &Verb) -> Result<(), Failure> {
         Verb::Bake(args) => vec![
             (args.error.is_some(), "--error", "ask for paths with --spp N"),
             (args.time.is_some(), "--time", "ask for paths with --spp N"),
-            (args.no_denoise, "--no-denoise", "nothing is denoised, so leave it out"),
             (args.resume, "--resume", "bake from the start"),
             (args.shard.is_some(), "--shard", "bake the whole scene"),
         ],

@@ -61,6 +61,7 @@ pub(crate) fn bake_settings(scene: &SceneArgs, layout: &LayoutArgs) -> Result<Ba
         samples_per_texel: layout.spp.get(),
         density: layout.density,
         layout: layout_kind,
+        max_page_size: layout.page_size,
         threads: scene.threads,
         ..BakeSettings::default()
     };

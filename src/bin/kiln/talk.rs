@@ -75,6 +75,29 @@ impl Talk {
     }
 }
 
+impl Talk {
+    /// How the texels are laid out, and what was done to them once they were measured.
+    pub(crate) fn repair(self, report: &BakeReport) {
+        let pages = if report.pages == 1 { "page" } else { "pages" };
+        let fill = 100.0 * report.fill;
+        self.say(format_args!(
+            "  {} {pages}, {fill:.0} % of them texels; {} objects unwrapped, {} texels hidden",
+            report.pages, report.unwrapped, report.hidden
+        ));
+        if let Some(denoised) = report.denoised {
+            let [before, after] = [denoised.before, denoised.after].map(|error| 100.0 * error.mean);
+            self.say(format_args!("  denoised: estimated error {before:.2} % before, {after:.2} % after (mean)"));
+        }
+        if let Some(seams) = report.seams {
+            let [before, after] = [seams.before, seams.after].map(|jump| 100.0 * jump.max);
+            self.say(format_args!(
+                "  seams: {} joints, largest jump {before:.1} % before, {after:.2} % after",
+                seams.joints
+            ));
+        }
+    }
+}
+
 /// Warnings, which always go to standard error.
 pub(crate) fn warn(warnings: &[String]) {
     for warning in warnings {

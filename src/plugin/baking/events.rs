@@ -3,7 +3,7 @@
 
 use super::extract::extract_scene;
 use super::settings::SceneSettings;
-use crate::bake::{BakeError, BakePlan, BakeSettings, Layout, Lightmap, Progress, Stage};
+use crate::bake::{BakeError, BakePlan, BakeSettings, Denoise, Layout, Lightmap, Progress, Stage};
 use crate::trace::{Estimator, ForcedEffects, Transport};
 use bevy::prelude::*;
 use std::num::NonZeroUsize;
@@ -47,6 +47,11 @@ pub struct BakeLightmaps {
     pub density: f32,
     /// Where the texels go.
     pub layout: LightmapLayout,
+    /// Largest width and height of a texture, 64 to 4096 [texels].
+    pub max_page_size: u32,
+    /// Whether noise is taken out of the texels.
+    #[reflect(ignore)]
+    pub denoise: Denoise,
     /// Bounces before a path is cut, which loses light: `Some(0)` is direct light only. `None` has no cap.
     pub max_bounces: Option<u32>,
     /// Which samples an estimate of light is made of; all have the same mean.
@@ -73,6 +78,8 @@ impl Default for BakeLightmaps {
             samples_per_texel: core.samples_per_texel,
             density: core.density,
             layout: LightmapLayout::default(),
+            max_page_size: core.max_page_size,
+            denoise: core.denoise,
             max_bounces: core.transport.max_bounces,
             estimator: core.transport.estimator,
             seed: core.transport.seed,
@@ -111,8 +118,9 @@ impl BakeLightmaps {
                 LightmapLayout::Packed => Layout::Packed,
                 LightmapLayout::Shared { size } => Layout::Shared { size },
             },
+            max_page_size: self.max_page_size,
+            denoise: self.denoise,
             threads: usize::try_from(self.threads).ok().and_then(NonZeroUsize::new),
-            ..BakeSettings::default()
         }
     }
 }
