@@ -7,7 +7,7 @@
 use super::path::PathStart;
 use super::tracer::Tracer;
 use crate::math::{Frame, square_to_uniform_hemisphere};
-use glam::{Vec2, Vec3};
+use glam::{DVec2, Vec2, Vec3};
 
 /// Directions in which it is looked whether a point lies inside a body.
 const DIRECTIONS: usize = 16;
@@ -49,40 +49,47 @@ impl Tracer {
         self.accel.meets(a, b, |hit| !self.surface(hit.triangle).passes)
     }
 
-    /// Whether a start lies inside a body. In most of [`DIRECTIONS`] over its surface a ray then leaves bodies once more
-    /// than it enters any: the winding number of the surfaces around the point, which tells inside from outside also
-    /// where bodies overlap, and where they have holes below half of what is seen (Jacobson, Kavan and Sorkine-Hornung
-    /// 2013). Rooms whose walls face inwards count as the outside that they are seen from.
+    /// Whether a start seems to lie inside a body. In most of [`DIRECTIONS`] over its surface the first thing that a ray
+    /// meets is then the back of a surface, also where the body is open on the side that it stands on; or, where another
+    /// body reaches into it, the ray leaves bodies once more than it enters any (the winding number of Jacobson, Kavan and
+    /// Sorkine-Hornung 2013). Beside a wall that has a front only it may seem so too, which whoever asks has to tell apart
+    /// by the light that gets there.
     pub(crate) fn is_enclosed(&self, start: &PathStart) -> bool {
         let frame = Frame::new(start.geometric_normal());
         let direction = |index: usize| {
             // The plastic number's sequence (Roberts 2018): spread evenly however many are taken.
-            let index = index as f64 + 0.5;
-            let place = glam::DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_2) * index;
-            frame.world_from_local(square_to_uniform_hemisphere(
-                (place - place.floor()).as_vec2().min(Vec2::splat(0.999_999)),
-            ))
+            let place = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_2) * (index as f64 + 0.5);
+            let place = (place - place.floor()).as_vec2().min(Vec2::splat(1.0 - f32::EPSILON));
+            frame.world_from_local(square_to_uniform_hemisphere(place))
         };
-        let sees_a_back = |direction: Vec3| {
-            let hit = self.accel.closest(start.origin(), direction, f32::INFINITY);
-            hit.is_some_and(|hit| {
-                self.surface(hit.triangle).passes || self.triangles[hit.triangle as usize].normal.dot(direction) > 0.0
-            })
-        };
-        if !(0..FIRST_DIRECTIONS).map(direction).any(sees_a_back) {
+        if !(0..FIRST_DIRECTIONS).any(|index| self.meets_a_back(start.origin(), direction(index))) {
             return false;
         }
-        let is_left_by = |direction: Vec3| {
-            let mut left = 0_i32;
-            self.accel.meets_towards(start.origin(), direction, |hit| {
-                if !self.surface(hit.triangle).passes {
-                    let shape = &self.triangles[hit.triangle as usize];
-                    left += if shape.normal.dot(direction) > 0.0 { 1 } else { -1 };
-                }
-                false
-            });
-            left > 0
+        let is_inside = |direction: &Vec3| {
+            self.meets_a_back(start.origin(), *direction) || self.bodies_left(start.origin(), *direction) > 0
         };
-        2 * (0..DIRECTIONS).map(direction).filter(|&direction| is_left_by(direction)).count() > DIRECTIONS
+        2 * (0..DIRECTIONS).map(direction).filter(is_inside).count() > DIRECTIONS
+    }
+
+    /// Whether the first thing that a ray meets is the back of a surface.
+    fn meets_a_back(&self, origin: Vec3, direction: Vec3) -> bool {
+        let hit = self.accel.closest(origin, direction, f32::INFINITY);
+        hit.is_some_and(|hit| {
+            let is_back = self.triangles[hit.triangle as usize].normal.dot(direction) > 0.0;
+            is_back && !self.surface(hit.triangle).passes
+        })
+    }
+
+    /// How many more bodies a ray leaves than it enters.
+    fn bodies_left(&self, origin: Vec3, direction: Vec3) -> i32 {
+        let mut left = 0;
+        self.accel.meets_towards(origin, direction, |hit| {
+            if !self.surface(hit.triangle).passes {
+                let is_back = self.triangles[hit.triangle as usize].normal.dot(direction) > 0.0;
+                left += if is_back { 1 } else { -1 };
+            }
+            false
+        });
+        left
     }
 }
