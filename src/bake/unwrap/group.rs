@@ -40,6 +40,8 @@ pub(super) struct Group<'a> {
 pub(super) struct Unwrapped {
     /// Each with the objects that take it, and their rectangles [texels].
     pub(super) meshes: Vec<(LaidOutMesh, Vec<(StableId, [u32; 2])>)>,
+    /// Objects that no page has room for.
+    pub(super) refused: Vec<StableId>,
     pub(super) warnings: Vec<BakeWarning>,
 }
 
@@ -57,7 +59,7 @@ impl Group<'_> {
         let surface = Surface::new(mesh, &self.shape);
         let (charts, method) = charts(&surface, cancel)?;
         let charts = boxed(&surface, charts);
-        let mut unwrapped = Unwrapped { meshes: Vec::new(), warnings: Vec::new() };
+        let mut unwrapped = Unwrapped { meshes: Vec::new(), refused: Vec::new(), warnings: Vec::new() };
         if method == UnwrapMethod::Simple {
             unwrapped.warnings.push(BakeWarning::SimpleUnwrap {
                 subject: Subject::Mesh(mesh.name.clone()),
@@ -74,8 +76,11 @@ impl Group<'_> {
             let rest = wishes.split_off(wishes.partition_point(|wish| wish.resolution <= FINER * coarsest));
             let bucket =
                 Bucket { mesh, surface: &surface, charts: &charts, wishes: &wishes, limit: settings.page_limit() };
-            if let Some((laid_out, sizes)) = bucket.pack(&mut unwrapped.warnings) {
-                unwrapped.meshes.push((LaidOutMesh { source: self.mesh, method, ..laid_out }, sizes));
+            match bucket.pack(&mut unwrapped.warnings) {
+                Some((laid_out, sizes)) => {
+                    unwrapped.meshes.push((LaidOutMesh { source: self.mesh, method, ..laid_out }, sizes));
+                }
+                None => unwrapped.refused.extend(wishes.iter().map(|wish| wish.instance.id.clone())),
             }
             wishes = rest;
         }

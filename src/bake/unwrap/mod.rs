@@ -118,8 +118,10 @@ impl<'a> LaidOut<'a> {
 
     /// Puts what was unwrapped into the scene.
     fn take(&mut self, scene: &'a Scene, unwrapped: Vec<Unwrapped>) {
+        let mut refused = BTreeSet::new();
         for group in unwrapped {
             self.warnings.extend(group.warnings);
+            refused.extend(group.refused);
             for (mesh, objects) in group.meshes {
                 for (id, size) in objects {
                     self.mesh_of.insert(id.clone(), self.meshes.len());
@@ -128,8 +130,11 @@ impl<'a> LaidOut<'a> {
                 self.meshes.push(mesh);
             }
         }
-        if !self.meshes.is_empty() {
-            self.scene = Cow::Owned(self.prepared(scene));
+        if !(self.meshes.is_empty() && refused.is_empty()) {
+            let mut prepared = self.prepared(scene);
+            let of_refused = prepared.instances.iter_mut().filter(|instance| refused.contains(&instance.id));
+            of_refused.for_each(|instance| instance.lightmap = None);
+            self.scene = Cow::Owned(prepared);
         }
     }
 
