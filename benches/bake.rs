@@ -33,6 +33,7 @@ fn settings(estimator: Estimator, layout: Layout, samples_per_texel: u32) -> Bak
         density: 1.5,
         layout,
         threads: NonZeroUsize::new(1),
+        ..BakeSettings::default()
     }
 }
 

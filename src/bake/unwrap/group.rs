@@ -36,10 +36,12 @@ pub(super) struct Group<'a> {
     pub(super) instances: Vec<(&'a Instance, f64)>,
 }
 
+/// A mesh, the objects that take it, and their rectangles [texels].
+type Taken = (LaidOutMesh, Vec<(StableId, [u32; 2])>);
+
 /// What became of a group.
 pub(super) struct Unwrapped {
-    /// Each with the objects that take it, and their rectangles [texels].
-    pub(super) meshes: Vec<(LaidOutMesh, Vec<(StableId, [u32; 2])>)>,
+    pub(super) meshes: Vec<Taken>,
     /// Objects that no page has room for.
     pub(super) refused: Vec<StableId>,
     pub(super) warnings: Vec<BakeWarning>,
@@ -122,7 +124,7 @@ struct Bucket<'a> {
 
 impl Bucket<'_> {
     /// The mesh with its UV1 and the rectangle of each object; `None` if no page has room for the charts.
-    fn pack(&self, warnings: &mut Vec<BakeWarning>) -> Option<(LaidOutMesh, Vec<(StableId, [u32; 2])>)> {
+    fn pack(&self, warnings: &mut Vec<BakeWarning>) -> Option<Taken> {
         let coarsest = self.wishes[0].resolution;
         let is_mixed = self.wishes.iter().any(|wish| wish.resolution > SAME * coarsest);
         let mut packing = Packing { density: coarsest, gap: if is_mixed { WIDE_GAP } else { GAP }, limit: self.limit };

@@ -1,12 +1,12 @@
 //! A UV1 for every mesh that needs one, without asking.
 //!
 //! A mesh whose own UV1 lies in the unit square, without overlaps and with an area for all of the surface, keeps it
-//! (`valid`). Any other is cut into charts (`surface`, `charts`, `split`, `merge`), which are laid out in the plane (`flatten`,
-//! `unroll`, `relax`), turned into their tightest boxes (`tight`) and packed on the texels of the object's rectangle
-//! (`pack`). What counts is the shape that the mesh has in the world (`shape`): instances of one shape share charts,
-//! and those of about one size the packing as well. The work is counted in visits of triangles and limited (`work`);
-//! beyond the limit each plane gets a chart, at worst each triangle. Same mesh, same bits: threads, the order of
-//! instances and the clock cannot matter. Where the texels go on pages is `atlas`'s.
+//! (`valid`). Any other is cut into charts (`surface`, `charts`, `split`, `merge`), which are laid out in the plane
+//! (`flatten`, `unroll`, `relax`), turned into their tightest boxes (`tight`) and packed on the texels of the object's
+//! rectangle (`pack`). What counts is the shape that the mesh has in the world (`shape`): instances of one shape share
+//! charts, and those of about one size the packing as well. The work is counted in visits of triangles and limited
+//! (`work`); beyond the limit each plane gets a chart, at worst each triangle. Same mesh, same bits: threads, the order
+//! of instances and the clock cannot matter. Where the texels go on pages is `atlas`'s.
 
 mod charts;
 mod flatten;
