@@ -68,8 +68,8 @@ pub struct Placement {
     pub uv_min: [f32; 2],
     /// Largest corner.
     pub uv_max: [f32; 2],
-    /// Index into [`Lightmap::meshes`] of the mesh that takes the place of the object's own; `None` where that keeps its
-    /// UV1.
+    /// Index into [`Lightmap::meshes`] of the mesh that takes the place of the object's own; `None` where that keeps
+    /// its UV1.
     pub mesh: Option<usize>,
 }
 

@@ -28,8 +28,8 @@ pub const HELD: [Held; 3] = [
         density: 1.0,
         layout: Layout::Shared { size: 32 },
     },
-    Held { name: "garden", hash: 0x5372_f327_8594_d685, scene: garden, density: 5.0, layout: Layout::Packed },
-    Held { name: "vitrine", hash: 0x33e0_3445_8110_c30f, scene: vitrine, density: 4.0, layout: Layout::Packed },
+    Held { name: "garden", hash: 0x2d8a_f38d_465d_e3cb, scene: garden, density: 5.0, layout: Layout::Packed },
+    Held { name: "vitrine", hash: 0xc5d2_58ed_83d3_c796, scene: vitrine, density: 4.0, layout: Layout::Packed },
 ];
 
 impl Held {

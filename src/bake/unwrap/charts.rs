@@ -116,3 +116,71 @@ fn simple(surface: &Surface, patch: &Patch, cancel: &CancelToken) -> Option<Vec<
     }
     Some(charts)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::shape::Shape;
+    use super::*;
+    use crate::scene::{Indices, Mesh};
+    use glam::{Affine3A, Vec3};
+
+    /// A sheet of quads over a square.
+    fn sheet(count: u32, at: impl Fn(f32, f32) -> Vec3) -> Surface {
+        let share = |step: u32| step as f32 / count as f32;
+        let positions =
+            (0..(count + 1) * (count + 1)).map(|point| at(share(point % (count + 1)), share(point / (count + 1))));
+        let quad = |cell: u32| {
+            let a = cell / count * (count + 1) + cell % count;
+            [a, a + 1, a + count + 2, a, a + count + 2, a + count + 1]
+        };
+        let mesh = Mesh {
+            positions: positions.collect(),
+            indices: Indices::U32((0..count * count).flat_map(quad).collect()),
+            normals: None,
+            ..Mesh::default()
+        };
+        Surface::new(&mesh, &Shape::new(&Affine3A::IDENTITY))
+    }
+
+    fn hill(u: f32, v: f32) -> Vec3 {
+        Vec3::new(u, v, 0.4 * (1.0 - (2.0 * u - 1.0).powi(2)) * (1.0 - (2.0 * v - 1.0).powi(2)))
+    }
+
+    fn assert_whole(surface: &Surface, charts: &[Chart]) {
+        let mut triangles: Vec<u32> = charts.iter().flat_map(|chart| chart.triangles.iter().copied()).collect();
+        triangles.sort_unstable();
+        assert!(triangles.into_iter().eq(0..surface.len() as u32), "every triangle once");
+        for chart in charts {
+            assert!(chart.flat().all(|[a, b, c]| (b - a).perp_dot(c - a) > 0.0));
+        }
+    }
+
+    #[test]
+    fn a_hill_is_one_chart_and_many_simple_ones() {
+        let surface = sheet(12, hill);
+        let cancel = CancelToken::default();
+        let (charts, method) = charts(&surface, &cancel).unwrap();
+        assert_whole(&surface, &charts);
+        assert_eq!((charts.len(), method), (1, UnwrapMethod::Charts));
+        let (charts, method) = charts_within(&surface, Budget::None, &cancel).unwrap();
+        assert_whole(&surface, &charts);
+        assert!(charts.len() > 100 && method == UnwrapMethod::Simple, "{}", charts.len());
+    }
+
+    #[test]
+    fn a_plane_is_one_chart_either_way() {
+        let surface = sheet(12, |u, v| Vec3::new(u, v, 0.0));
+        for budget in [Budget::PerTriangle, Budget::None] {
+            let (charts, _) = charts_within(&surface, budget, &CancelToken::default()).unwrap();
+            assert_whole(&surface, &charts);
+            assert_eq!(charts.len(), 1);
+        }
+    }
+
+    #[test]
+    fn cancelled_is_none() {
+        let cancel = CancelToken::default();
+        cancel.cancel();
+        assert!(charts(&sheet(12, hill), &cancel).is_none());
+    }
+}

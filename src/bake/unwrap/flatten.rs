@@ -19,13 +19,15 @@ pub(super) struct Limits {
     mean: f64,
     /// The worst triangle that counts.
     worst: f64,
+    /// Cosine between a normal and the mean up to which relaxing is tried.
+    open: f64,
 }
 
 impl Limits {
     /// Of a patch that would be parted otherwise.
-    pub(super) const ALONE: Self = Self { mean: 1.2, worst: 1.7 };
+    pub(super) const ALONE: Self = Self { mean: 1.2, worst: 1.7, open: 0.2 };
     /// Of two charts put together, which are sound without each other.
-    pub(super) const MERGED: Self = Self { mean: 1.1, worst: 1.5 };
+    pub(super) const MERGED: Self = Self { mean: 1.1, worst: 1.5, open: 0.3 };
 }
 
 /// Share of the area that may be stretched more: slivers, and the tip of a cone.
@@ -33,9 +35,6 @@ const BAD_SHARE: f64 = 1e-3;
 
 /// Cosine between a normal and the mean up to which a patch is seen along the mean without being relaxed: 15°.
 const FLAT: f64 = 0.966;
-
-/// The same up to which it can be relaxed: 78°.
-const OPEN: f64 = 0.2;
 
 /// Triangles beyond which a patch is parted rather than relaxed.
 const MOST_RELAXED: usize = 100_000;
@@ -57,7 +56,7 @@ pub(super) fn flatten(surface: &Surface, patch: &Patch, limits: &Limits, work: &
     {
         return Some(unrolled);
     }
-    if least < OPEN || patch.len() > MOST_RELAXED {
+    if least < limits.open || patch.len() > MOST_RELAXED {
         return None;
     }
     let relaxed = relax(surface, along(surface, patch, axis), work)?;

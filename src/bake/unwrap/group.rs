@@ -36,10 +36,14 @@ pub(super) struct Group<'a> {
     pub(super) instances: Vec<(&'a Instance, f64)>,
 }
 
+/// A mesh, the objects that take it, and their rectangles [texels].
+type Taken = (LaidOutMesh, Vec<(StableId, [u32; 2])>);
+
 /// What became of a group.
 pub(super) struct Unwrapped {
-    /// Each with the objects that take it, and their rectangles [texels].
-    pub(super) meshes: Vec<(LaidOutMesh, Vec<(StableId, [u32; 2])>)>,
+    pub(super) meshes: Vec<Taken>,
+    /// Objects that no page has room for.
+    pub(super) refused: Vec<StableId>,
     pub(super) warnings: Vec<BakeWarning>,
 }
 
@@ -57,7 +61,7 @@ impl Group<'_> {
         let surface = Surface::new(mesh, &self.shape);
         let (charts, method) = charts(&surface, cancel)?;
         let charts = boxed(&surface, charts);
-        let mut unwrapped = Unwrapped { meshes: Vec::new(), warnings: Vec::new() };
+        let mut unwrapped = Unwrapped { meshes: Vec::new(), refused: Vec::new(), warnings: Vec::new() };
         if method == UnwrapMethod::Simple {
             unwrapped.warnings.push(BakeWarning::SimpleUnwrap {
                 subject: Subject::Mesh(mesh.name.clone()),
@@ -74,8 +78,11 @@ impl Group<'_> {
             let rest = wishes.split_off(wishes.partition_point(|wish| wish.resolution <= FINER * coarsest));
             let bucket =
                 Bucket { mesh, surface: &surface, charts: &charts, wishes: &wishes, limit: settings.page_limit() };
-            if let Some((laid_out, sizes)) = bucket.pack(&mut unwrapped.warnings) {
-                unwrapped.meshes.push((LaidOutMesh { source: self.mesh, method, ..laid_out }, sizes));
+            match bucket.pack(&mut unwrapped.warnings) {
+                Some((laid_out, sizes)) => {
+                    unwrapped.meshes.push((LaidOutMesh { source: self.mesh, method, ..laid_out }, sizes));
+                }
+                None => unwrapped.refused.extend(wishes.iter().map(|wish| wish.instance.id.clone())),
             }
             wishes = rest;
         }
@@ -117,7 +124,7 @@ struct Bucket<'a> {
 
 impl Bucket<'_> {
     /// The mesh with its UV1 and the rectangle of each object; `None` if no page has room for the charts.
-    fn pack(&self, warnings: &mut Vec<BakeWarning>) -> Option<(LaidOutMesh, Vec<(StableId, [u32; 2])>)> {
+    fn pack(&self, warnings: &mut Vec<BakeWarning>) -> Option<Taken> {
         let coarsest = self.wishes[0].resolution;
         let is_mixed = self.wishes.iter().any(|wish| wish.resolution > SAME * coarsest);
         let mut packing = Packing { density: coarsest, gap: if is_mixed { WIDE_GAP } else { GAP }, limit: self.limit };

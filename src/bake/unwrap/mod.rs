@@ -1,12 +1,12 @@
 //! A UV1 for every mesh that needs one, without asking.
 //!
 //! A mesh whose own UV1 lies in the unit square, without overlaps and with an area for all of the surface, keeps it
-//! (`valid`). Any other is cut into charts (`surface`, `charts`, `split`, `merge`), which are laid out in the plane (`flatten`,
-//! `unroll`, `relax`), turned into their tightest boxes (`tight`) and packed on the texels of the object's rectangle
-//! (`pack`). What counts is the shape that the mesh has in the world (`shape`): instances of one shape share charts,
-//! and those of about one size the packing as well. The work is counted in visits of triangles and limited (`work`);
-//! beyond the limit each plane gets a chart, at worst each triangle. Same mesh, same bits: threads, the order of
-//! instances and the clock cannot matter. Where the texels go on pages is `atlas`'s.
+//! (`valid`). Any other is cut into charts (`surface`, `charts`, `split`, `merge`), which are laid out in the plane
+//! (`flatten`, `unroll`, `relax`), turned into their tightest boxes (`tight`) and packed on the texels of the object's
+//! rectangle (`pack`). What counts is the shape that the mesh has in the world (`shape`): instances of one shape share
+//! charts, and those of about one size the packing as well. The work is counted in visits of triangles and limited
+//! (`work`); beyond the limit each plane gets a chart, at worst each triangle. Same mesh, same bits: threads, the order
+//! of instances and the clock cannot matter. Where the texels go on pages is `atlas`'s.
 
 mod charts;
 mod flatten;
@@ -118,8 +118,10 @@ impl<'a> LaidOut<'a> {
 
     /// Puts what was unwrapped into the scene.
     fn take(&mut self, scene: &'a Scene, unwrapped: Vec<Unwrapped>) {
+        let mut refused = BTreeSet::new();
         for group in unwrapped {
             self.warnings.extend(group.warnings);
+            refused.extend(group.refused);
             for (mesh, objects) in group.meshes {
                 for (id, size) in objects {
                     self.mesh_of.insert(id.clone(), self.meshes.len());
@@ -128,8 +130,11 @@ impl<'a> LaidOut<'a> {
                 self.meshes.push(mesh);
             }
         }
-        if !self.meshes.is_empty() {
-            self.scene = Cow::Owned(self.prepared(scene));
+        if !(self.meshes.is_empty() && refused.is_empty()) {
+            let mut prepared = self.prepared(scene);
+            let of_refused = prepared.instances.iter_mut().filter(|instance| refused.contains(&instance.id));
+            of_refused.for_each(|instance| instance.lightmap = None);
+            self.scene = Cow::Owned(prepared);
         }
     }
 

@@ -12,10 +12,10 @@ use super::work::Work;
 use glam::DVec2;
 
 /// Turns of rotations and places.
-const ROUNDS: usize = 10;
+const ROUNDS: usize = 6;
 
 /// Steps of conjugate gradients in each.
-const STEPS: usize = 40;
+const STEPS: usize = 24;
 
 /// Cotangents are held within these.
 const COTANGENTS: [f64; 2] = [0.05, 20.0];

@@ -22,7 +22,7 @@ const MOST_PIECES: usize = 8;
 const ROUNDS: usize = 3;
 
 /// How much a step that faces away from a seed costs more than one that faces its way.
-const TURN_COST: f64 = 6.0;
+const TURN_COST: f64 = 24.0;
 
 /// Parts a patch into at least two; `None` where there is no work left.
 pub(super) fn split(surface: &Surface, patch: &Patch, work: &mut Work<'_>) -> Option<Vec<Patch>> {

@@ -34,7 +34,12 @@ pub enum Uv1Fault {
         share: f64,
     },
     /// Triangles that lie over each other.
-    #[error("has triangles over each other ({pairs} pairs{}, the first {} and {})", if *is_more { " or more" } else { "" }, first[0], first[1])]
+    #[error(
+        "has triangles over each other ({pairs} pairs{}, the first {} and {})",
+        if *is_more { " or more" } else { "" },
+        first[0],
+        first[1]
+    )]
     Overlaps {
         /// How many pairs were found.
         pairs: u64,

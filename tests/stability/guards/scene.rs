@@ -103,7 +103,8 @@ pub static TEXELS_IN_WORLD: Guard = Guard {
            transforms",
     edits: &[Edit {
         file: "src/bake/atlas.rs",
-        text: "let [a, b, c] = tracer.vertices(world).map(|vertex| vertex.as_dvec3());",
-        instead: "let [a, b, c] = vertices.map(|v| scene.meshes[instance.mesh].positions[v as usize].as_dvec3());",
+        text: "let [a, b, c] = self.tracer.vertices(world).map(|vertex| vertex.as_dvec3());",
+        instead: "let mesh = &self.scene.meshes[self.scene.instances[self.receiver.instance].mesh]; \
+                  let [a, b, c] = vertices.map(|vertex| mesh.positions[vertex as usize].as_dvec3());",
     }],
 };
