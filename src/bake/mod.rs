@@ -7,7 +7,7 @@
 //! 3. `raster` finds the texels that each triangle covers, however little of them, and `sites` lists them;
 //! 4. `gather` traces paths from the covered part of each texel, in parallel, in independently scrambled replicates
 //!    whose spread is the texel's standard error;
-//! 5. `dilate` fills the texels beside the charts that texture filtering also reads.
+//! 5. `repair` fills the texels beside the charts that texture filtering also reads, and mends seams.
 //!
 //! Every number is a function of the scene, the settings and the seed: threads and order cannot matter.
 

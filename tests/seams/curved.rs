@@ -68,12 +68,6 @@ fn check(name: &str, patches: &[Patch]) -> Result<(), String> {
         100.0 * kept,
         100.0 * lightmap.report.relative_stderr.mean,
     );
-    for filtering in [Filtering::Bilinear, Filtering::Bicubic] {
-        let look = Look::new(&scene, &lightmap, filtering);
-        let mut all: Vec<(f32, String)> = pairs.iter().map(|pair| { let [a, b] = pair.sides.map(|side| look.at(side)); ((a - b).abs().max_element() / (0.5 * (a + b)).max_element().max(0.1), format!("{a} {b} {:?}", pair.sides)) }).collect();
-        all.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for one in all.iter().take(12) { println!("DBG {filtering:?} {one:?}"); }
-    }
     if bare < 2.0 * TARGET {
         return Err(format!("{name}: there is nothing to mend: {bare}"));
     }

@@ -15,8 +15,8 @@ mod seams;
 pub(super) use dilate::PASSES;
 pub(super) use field::Field;
 pub use field::TexelState;
-pub use lookup::Filtering;
 pub(super) use lookup::DisplayedRect;
+pub use lookup::Filtering;
 
 use super::atlas::Atlas;
 use super::sites::Site;
