@@ -8,7 +8,8 @@
 //! 3. `raster` finds the texels that each triangle covers, however little of them, and `sites` lists them;
 //! 4. `gather` traces paths from the covered part of each texel, in parallel, in independently scrambled replicates
 //!    whose spread is the texel's standard error;
-//! 5. `repair` takes out the noise and fills the texels beside the charts that texture filtering also reads.
+//! 5. `repair` takes out the noise, keeps light from crossing walls, fills the texels beside the charts that texture
+//!    filtering also reads, and mends seams.
 //!
 //! Every number is a function of the scene, the settings and the seed: threads and order cannot matter.
 

@@ -117,13 +117,13 @@ impl<'a> Look<'a> {
         self.lightmap.sample(placement, uv + self.shift / texels, self.filtering)
     }
 
-    /// The jump at each pair over the local value, largest first. Where both sides are darker than a hundredth of the
-    /// brightest seam that hundredth is the local value.
+    /// The jump at each pair over the local value, largest first. Where both sides are darker than a fiftieth of the
+    /// brightest seam that fiftieth is the local value.
     pub fn jumps(&self, pairs: &[Pair]) -> Vec<f32> {
         let looked: Vec<[Vec3; 2]> = pairs.iter().map(|pair| pair.sides.map(|side| self.at(side))).collect();
         let brightest = looked.iter().flatten().fold(0.0_f32, |most, value| most.max(value.max_element()));
         let jump = |[a, b]: &[Vec3; 2]| {
-            let local = (0.5 * (*a + *b)).max_element().max(0.01 * brightest);
+            let local = (0.5 * (*a + *b)).max_element().max(0.02 * brightest);
             if local > 0.0 { (*a - *b).abs().max_element() / local } else { 0.0 }
         };
         let mut jumps: Vec<f32> = looked.iter().map(jump).collect();

@@ -21,7 +21,7 @@ use solve::{Rows, Solution, Unknown, solve, stiffness};
 
 /// Bounds of the relative standard error that a measured texel may claim.
 const LEAST_ERROR: f64 = 0.01;
-const MOST_ERROR: f64 = 0.3;
+const MOST_ERROR: f64 = 1.0;
 
 /// What a filled texel is taken to be off: it is nobody's measurement.
 const FILLED_ERROR: f64 = 0.25;
@@ -184,7 +184,7 @@ impl System {
             };
             let error = match owners[page as usize].source(texel) {
                 Some(source) if source == texel => measured(source).clamp(LEAST_ERROR, MOST_ERROR),
-                Some(source) => measured(source).clamp(FILLED_ERROR, 2.0 * FILLED_ERROR),
+                Some(source) => measured(source).clamp(FILLED_ERROR, MOST_ERROR),
                 None => FILLED_ERROR,
             };
             Unknown { value: field.value[texel].as_dvec3(), stiffness: stiffness(error, local) }

@@ -14,8 +14,11 @@ use crate::bake::repair::{Field, Surroundings, TexelState};
 use crate::trace::PathStart;
 use glam::{DVec2, DVec3, Vec3};
 
-/// Samples for each texel of the finer side.
-const PER_TEXEL: f64 = 5.0;
+/// Samples of a joint lie farther apart than this [texels of the finer side].
+const CLOSEST: f64 = 0.1;
+
+/// And no farther than this.
+const FARTHEST: f64 = 0.2;
 
 /// The least cosine between receiving normals across a joint: 5°.
 const SMOOTH: f32 = 0.996_194_7;
@@ -93,17 +96,12 @@ impl<'a> Sampling<'a> {
     /// The samples of a joint.
     pub(super) fn samples(&self, number: u32, joint: &Joint) -> Vec<Sample> {
         let [a, b] = joint.edges.map(|edge| &self.borders[edge as usize]);
-        let share = joint.to - joint.from;
-        let world = a.ends[0].distance(a.ends[1]) * share;
-        let texels = (a.texels() * share).max(b.texels() * world / b.ends[0].distance(b.ends[1]));
-        let count = (PER_TEXEL * texels).ceil().max(1.0) as u32;
-        let sample = |index: u32| {
-            let at = joint.from + share * (f64::from(index) + 0.5) / f64::from(count);
+        let sample = |at: f64| {
             let point = a.ends[0].lerp(a.ends[1], at);
             let sides = [self.side(a, at)?, self.side(b, b.parameter(point).clamp(0.0, 1.0))?];
             self.sample(number, &sides)
         };
-        (0..count).filter_map(sample).collect()
+        places(a, b, joint).into_iter().filter_map(sample).collect()
     }
 
     /// A sample between two sides, if the surface is one there.
@@ -210,6 +208,45 @@ impl<'a> Sampling<'a> {
         let is_open = self.place.tracer.is_open_between(&site.footing.anchor, &side.beside);
         is_open.then(|| flood(field, owners, &taps, nearest))
     }
+}
+
+/// Where along a joint lookups are compared, in parts of the first edge: wherever either passes from one set of texels
+/// to the next, which is where two that are linear between such places differ most, and in between, for those that are not.
+fn places(a: &Border, b: &Border, joint: &Joint) -> Vec<f64> {
+    let of_b = |at: f64| b.parameter(a.ends[0].lerp(a.ends[1], at));
+    let (b_from, b_to) = (of_b(joint.from), of_b(joint.to));
+    let share = joint.to - joint.from;
+    let finer = (a.texels() * share).max(b.texels() * (b_to - b_from).abs());
+    let mut ends = vec![joint.from, joint.to];
+    let mut add = |border: &Border, from: f64, to: f64| {
+        let [start, end] = [from, to].map(|at| border.places[0].lerp(border.places[1], at));
+        for axis in 0..2 {
+            let (low, high) = (start[axis].min(end[axis]), start[axis].max(end[axis]));
+            let mut centre = (low - 0.5).ceil() + 0.5;
+            while centre < high {
+                ends.push(joint.from + share * (centre - start[axis]) / (end[axis] - start[axis]));
+                centre += 1.0;
+            }
+        }
+    };
+    add(a, joint.from, joint.to);
+    add(b, b_from, b_to);
+    ends.sort_unstable_by(f64::total_cmp);
+    if finer < 2.0 * CLOSEST {
+        return vec![0.5 * (joint.from + joint.to)];
+    }
+    let closest = CLOSEST * share / finer;
+    ends.dedup_by(|next, kept| *next - *kept < closest);
+    let farthest = FARTHEST * share / finer;
+    let between = |gap: &[f64]| {
+        let (from, width) = (gap[0], gap[1] - gap[0]);
+        let count = (width / farthest).ceil().max(1.0) as u32;
+        (1..count).map(move |step| from + width * f64::from(step) / f64::from(count))
+    };
+    let between: Vec<f64> = ends.windows(2).flat_map(between).collect();
+    ends.extend(between);
+    ends.sort_unstable_by(f64::total_cmp);
+    ends
 }
 
 /// The texels of a lookup that hang together with one of them: measured ones by links, and what was filled from those.

@@ -13,7 +13,7 @@ use crate::bake::CancelToken;
 use glam::DVec3;
 
 /// The relative jump that costs as much as moving a texel by its standard error, τ.
-const BORNE: f64 = 0.02;
+const BORNE: f64 = 0.01;
 
 /// Relative jumps below this are none.
 const NO_JUMP: f64 = 1e-6;
@@ -23,7 +23,7 @@ const TARGET: f64 = 4e-3;
 const NOTED: f64 = 3e-3;
 
 /// The most rounds.
-const ROUNDS: usize = 20;
+const ROUNDS: usize = 30;
 
 /// How often a round is solved again with what fell below zero held there.
 const HOLDS: usize = 3;
@@ -34,7 +34,7 @@ const EXTRA: f64 = 4.0;
 const MOST_EXTRA: f64 = 1e4;
 
 /// Steps of one solution, and the reduction of the residual after which it is done.
-const STEPS: usize = 200;
+const STEPS: usize = 300;
 const REDUCTION: f64 = 1e-3;
 
 /// An unknown: one texel.
