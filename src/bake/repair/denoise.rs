@@ -7,6 +7,9 @@
 //! surface is smooth almost everywhere, which the paraboloid keeps, right up to a chart's border; at the edge of a
 //! shadow the texels beyond are not like those before it.
 //!
+//! It is done twice. A first, small window fits each half by itself; a second, larger one compares those fits, which
+//! are less noisy and have slopes, so that texels of one slope are alike however far down they lie.
+//!
 //! What it promises: a window is walked over links, so that nothing comes from another chart, from behind a wall, or
 //! from a texel that is not measured. A channel without error keeps its bits. No texel moves by more than
 //! [`REACH`] of its standard errors, nor out of the range of the texels that it is made of, so that none gets negative.
@@ -26,13 +29,14 @@ use crate::bake::gather::{Estimate, relative_error};
 use crate::bake::report::Denoised;
 use crate::bake::workers::Workers;
 use crate::bake::{BakeError, CancelToken};
-use fit::{Place, Sums};
+use fit::{Fitted, Place, Sums};
 use glam::Vec3;
+use likeness::Looks;
 use texels::Texels;
 use window::{Reached, Window};
 
-/// How far a texel looks for others like it [texels].
-const RADIUS: f32 = 6.0;
+/// How far a texel looks for others like it, first and then [texels].
+const RADII: [f32; 2] = [4.6, 7.5];
 
 /// How far a texel may be moved, in standard errors.
 const REACH: f32 = 4.0;
@@ -66,25 +70,27 @@ fn estimates(fields: &[Field], error: impl Fn(&Field) -> &Vec<Vec3>) -> Vec<Esti
 /// A texel with half of the runs, as the other half weighs it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Filtered {
-    value: Vec3,
-    variance: Vec3,
+    fitted: Fitted,
     /// Least and most of what it is made of.
     range: [Vec3; 2],
 }
 
 fn denoise_page(field: &mut Field, workers: &Workers<'_>) -> Result<(), BakeError> {
     let texels = Texels::new(field);
-    let window = Window::new(RADIUS);
-    let filtered = workers.gather_quietly(&texels.measured, |&index, cancel| {
-        live(cancel)?;
-        let reached = window.reach(&texels, index);
-        Some([0, 1].map(|half| filter(&texels, half, index, &reached)))
+    let [first, second] = RADII.map(Window::new);
+    let measured = [0, 1].map(|half| Looks::measured(&texels, half));
+    let fits = filtered(&texels, &first, workers, |half, reached| {
+        filter(&texels, &measured[half], half, reached, RADII[0]).fitted
+    })?;
+    let fitted = [0, 1].map(|half| Looks::fitted(&texels, fits.iter().map(|fits| fits[half])));
+    let filtered = filtered(&texels, &second, workers, |half, reached| {
+        filter(&texels, &fitted[half], 1 - half, reached, RADII[1])
     })?;
     // Both halves are off by the same bias and by independent noise.
     let mut squared_bias = vec![Vec3::ZERO; field.value.len()];
     for (&index, [first, second]) in texels.measured.iter().zip(&filtered) {
         let [a, b] = [&texels.halves[0][index], &texels.halves[1][index]];
-        squared_bias[index] = (first.value - *b) * (second.value - *a);
+        squared_bias[index] = (first.fitted.value - *b) * (second.fitted.value - *a);
     }
     let near = Window::new(BIAS_RADIUS);
     let biases = workers.gather_quietly(&texels.measured, |&index, cancel| {
@@ -105,24 +111,38 @@ fn live(cancel: &CancelToken) -> Option<()> {
     (!cancel.is_cancelled()).then_some(())
 }
 
-/// What a texel of one half is by the texels that the other half says are like it.
-fn filter(texels: &Texels, half: usize, middle: usize, reached: &[Reached]) -> Filtered {
-    let measured = &texels.halves[1 - half];
+/// Something of each measured texel and each half, from the texels that can be reached.
+fn filtered<T: Send>(
+    texels: &Texels,
+    window: &Window,
+    workers: &Workers<'_>,
+    work: impl Fn(usize, &[Reached]) -> T + Sync,
+) -> Result<Vec<[T; 2]>, BakeError> {
+    workers.gather_quietly(&texels.measured, |&index, cancel| {
+        live(cancel)?;
+        let reached = window.reach(texels, index);
+        Some([0, 1].map(|half| work(half, &reached)))
+    })
+}
+
+/// What a texel of one half is by the texels that look like it.
+fn filter(texels: &Texels, looks: &Looks<'_>, half: usize, reached: &[Reached], radius: f32) -> Filtered {
+    let measured = &texels.halves[half];
+    let middle = reached[0].index;
     let own = measured[middle];
     let mut range = [own, own];
     let mut sums = Sums::default();
     sums.add(1.0, Place::MIDDLE, own, texels.variance[middle]);
     for other in &reached[1..] {
-        let near = 1.0 - other.squared_distance() / (RADIUS * RADIUS);
-        let weight = near * likeness::likeness(texels, half, middle, other.index);
+        let near = 1.0 - other.squared_distance() / (radius * radius);
+        let weight = near * looks.likeness(middle, other.index, other.step);
         if weight > 0.0 {
             let value = measured[other.index];
-            sums.add(weight, Place::new(other.step, RADIUS), value, texels.variance[other.index]);
+            sums.add(weight, Place::new(other.step, radius), value, texels.variance[other.index]);
             range = [range[0].min(value), range[1].max(value)];
         }
     }
-    let (value, variance) = sums.at_middle();
-    Filtered { value, variance, range }
+    Filtered { fitted: sums.fitted(radius), range }
 }
 
 /// The mean of both halves within what is allowed, and its standard error.
@@ -133,8 +153,8 @@ fn merged(texels: &Texels, field: &Field, index: usize, halves: &[Filtered; 2], 
     let reach = REACH * root(0.5 * texels.variance[index]).max(field.stderr[index]);
     let low = first.range[0].min(second.range[0]).max(measured - reach);
     let high = first.range[1].max(second.range[1]).min(measured + reach);
-    let value = (0.5 * (first.value + second.value)).max(low.min(measured)).min(high.max(measured));
-    let residual = root(0.25 * (first.variance + second.variance) + bias);
+    let value = (0.5 * (first.fitted.value + second.fitted.value)).max(low.min(measured)).min(high.max(measured));
+    let residual = root(0.25 * (first.fitted.variance + second.fitted.variance) + bias);
     let is_exact = field.stderr[index].cmpeq(Vec3::ZERO);
     [Vec3::select(is_exact, measured, value), Vec3::select(is_exact, Vec3::ZERO, residual)]
 }

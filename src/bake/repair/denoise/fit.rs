@@ -1,4 +1,4 @@
-//! A paraboloid through weighted texels, and its value in the middle.
+//! A paraboloid through weighted texels, as it is in the middle.
 
 use glam::Vec3;
 
@@ -7,6 +7,23 @@ const TERMS: usize = 6;
 
 /// What holds slopes and curvature where the texels do not, in weights of one texel at the window's rim.
 const RIDGE: f64 = 0.3;
+
+/// A paraboloid in the middle of its window.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Fitted {
+    pub(super) value: Vec3,
+    /// Change from texel to texel, along the columns and the rows.
+    pub(super) slope: [Vec3; 2],
+    /// Variance of the value.
+    pub(super) variance: Vec3,
+}
+
+impl Fitted {
+    /// A texel by itself.
+    pub(super) fn of_texel(value: Vec3, variance: Vec3) -> Self {
+        Self { value, variance, slope: [Vec3::ZERO; 2] }
+    }
+}
 
 /// The terms at a place.
 #[derive(Clone, Copy, Debug)]
@@ -42,44 +59,31 @@ impl Sums {
     pub(super) fn add(&mut self, weight: f32, Place(terms): Place, value: Vec3, variance: Vec3) {
         for row in 0..TERMS {
             let weighted = weight * terms[row];
-            for column in row..TERMS {
-                let product = weighted * terms[column];
-                self.normal[row][column] += product;
-                self.squared[row][column] += weight * product;
+            for (column, term) in terms.iter().enumerate().skip(row) {
+                self.normal[row][column] += weighted * term;
+                self.squared[row][column] += weight * weighted * term;
             }
             self.moments[row] += value * weighted;
         }
         self.variance += variance * weight;
     }
 
-    /// The paraboloid's value in the middle, and its variance.
-    pub(super) fn at_middle(&self) -> (Vec3, Vec3) {
-        let row = self.first_row_of_inverse();
-        let value = (0..TERMS).map(|term| self.moments[term] * row[term] as f32).sum();
+    /// The paraboloid in the middle of a window of some radius [texels].
+    pub(super) fn fitted(&self, radius: f32) -> Fitted {
+        let factor = self.factor();
+        let [value, along_x, along_y] = [0, 1, 2].map(|term| solve(&factor, term));
         let mut spread = 0.0;
-        for (a, &by_row) in row.iter().enumerate() {
-            for (b, &by_column) in row.iter().enumerate() {
+        for (a, &by_row) in value.iter().enumerate() {
+            for (b, &by_column) in value.iter().enumerate() {
                 spread += by_row * by_column * f64::from(self.squared[a.min(b)][a.max(b)]);
             }
         }
-        (value, self.variance * (spread.max(0.0) as f32 / self.normal[0][0]))
-    }
-
-    /// The first row of the inverse of the normal matrix: what each moment adds to the value in the middle.
-    fn first_row_of_inverse(&self) -> [f64; TERMS] {
-        let factor = self.factor();
-        // L y = e₁, Lᵀ x = y.
-        let mut y = [0.0; TERMS];
-        for row in 0..TERMS {
-            let known: f64 = (0..row).map(|column| factor[row][column] * y[column]).sum();
-            y[row] = (f64::from(u8::from(row == 0)) - known) / factor[row][row];
+        let sum = |row: [f64; TERMS]| (0..TERMS).map(|term| self.moments[term] * row[term] as f32).sum::<Vec3>();
+        Fitted {
+            value: sum(value),
+            slope: [sum(along_x) / radius, sum(along_y) / radius],
+            variance: self.variance * (spread.max(0.0) as f32 / self.normal[0][0]),
         }
-        let mut x = [0.0; TERMS];
-        for row in (0..TERMS).rev() {
-            let known: f64 = (row + 1..TERMS).map(|column| factor[column][row] * x[column]).sum();
-            x[row] = (y[row] - known) / factor[row][row];
-        }
-        x
     }
 
     /// Cholesky's factor of the normal matrix. The ridge keeps its diagonal from zero.
@@ -98,4 +102,19 @@ impl Sums {
         }
         factor
     }
+}
+
+/// A row of the inverse of a matrix by its Cholesky factor: L y = e, Lᵀ x = y.
+fn solve(factor: &Matrix, unit: usize) -> [f64; TERMS] {
+    let mut y = [0.0; TERMS];
+    for row in 0..TERMS {
+        let known: f64 = (0..row).map(|column| factor[row][column] * y[column]).sum();
+        y[row] = (f64::from(u8::from(row == unit)) - known) / factor[row][row];
+    }
+    let mut x = [0.0; TERMS];
+    for row in (0..TERMS).rev() {
+        let known: f64 = (row + 1..TERMS).map(|column| factor[column][row] * x[column]).sum();
+        x[row] = (y[row] - known) / factor[row][row];
+    }
+    x
 }
