@@ -37,7 +37,7 @@ const BAD_SHARE: f64 = 1e-3;
 const FLAT: f64 = 0.966;
 
 /// Triangles beyond which a patch is parted rather than relaxed.
-const MOST_RELAXED: usize = 100_000;
+const MOST_RELAXED: usize = 400_000;
 
 /// Lays a patch out; `None` if it must be parted.
 pub(super) fn flatten(surface: &Surface, patch: &Patch, limits: &Limits, work: &mut Work<'_>) -> Option<Chart> {
