@@ -51,7 +51,7 @@ fn report(lightmap: &Lightmap) -> SeamReport {
 
 fn check(name: &str, patches: &[Patch]) -> Result<(), String> {
     let scene = scene(name, patches);
-    let lightmap = bake(&scene, &settings(48.0, 64));
+    let lightmap = bake(&scene, &settings(48.0, 256));
     let pairs = pairs(&scene, Edges::Smooth);
     let bare = worst_jump(&scene, &unrepaired(&lightmap), &pairs);
     let jump = worst_jump(&scene, &lightmap, &pairs);

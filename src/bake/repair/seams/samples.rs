@@ -22,8 +22,8 @@ const FARTHEST: f64 = 0.2;
 
 /// Where the light changes by more than this share of it from one to the next there are more between them, up to this
 /// number of steps.
-const STEEP: f64 = 0.02;
-const MOST_BETWEEN: f64 = 8.0;
+const STEEP: f64 = 0.01;
+const MOST_BETWEEN: f64 = 12.0;
 
 /// A joint that is shorter than this has a single one [texels of the finer side].
 const SHORT: f64 = 0.2;
