@@ -70,8 +70,8 @@ impl<'a> Judge<'a> {
     /// Differences across shadow edges and away from what stands on a surface, as a share of the reference's.
     pub fn contrasts(&self, values: &[Vec3]) -> [f64; 2] {
         [
-            self.contrast(values, |index, step| self.edge(index, step)),
-            self.contrast(values, |index, step| self.contact(index, step)),
+            self.contrast(values, 0.15, |index, step| self.edge(index, step)),
+            self.contrast(values, 0.05, |index, step| self.contact(index, step)),
         ]
     }
 
@@ -85,18 +85,21 @@ impl<'a> Judge<'a> {
 
     /// A texel at the foot of something, and the third one from it.
     fn contact(&self, index: usize, [x, y]: [i32; 2]) -> Option<[usize; 2]> {
-        self.beside(index, [-x, -y], TexelState::Hidden)?;
+        let is_dark = |texel: usize| luminance(self.reference.value[texel]) < 1e-3 * self.mean;
+        let below =
+            self.beside(index, [-x, -y], TexelState::Measured).filter(|&texel| is_dark(texel) && !is_dark(index));
+        below.or_else(|| self.beside(index, [-x, -y], TexelState::Hidden))?;
         Some([index, self.beside(index, [3 * x, 3 * y], TexelState::Measured)?])
     }
 
-    fn contrast(&self, values: &[Vec3], pair: impl Fn(usize, [i32; 2]) -> Option<[usize; 2]>) -> f64 {
+    fn contrast(&self, values: &[Vec3], least: f64, pair: impl Fn(usize, [i32; 2]) -> Option<[usize; 2]>) -> f64 {
         let (mut found, mut truth, mut count) = (0.0, 0.0, 0);
         for &index in &self.texels {
             for step in [[1, 0], [0, 1], [-1, 0], [0, -1]] {
                 let Some([one, other]) = pair(index, step) else { continue };
                 let [a, b] = [one, other].map(|texel| luminance(self.reference.value[texel]));
                 // By the reference alone, or noise would choose.
-                if (a - b).abs() > 0.15 * (a + b) {
+                if (a - b).abs() > least * (a + b) {
                     truth += (a - b).abs();
                     found += (a - b).signum() * luminance(values[one] - values[other]);
                     count += 1;
