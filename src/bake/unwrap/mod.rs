@@ -210,12 +210,12 @@ fn faulty_meshes(scene: &Scene, receivers: &[&Instance], workers: &Workers<'_>) 
     let meshes: Vec<usize> = meshes.into_iter().collect();
     let judged = workers.gather_quietly(&meshes, |&index, cancel| {
         let mesh = &scene.meshes[index];
-        let judge = || match &mesh.uv1 {
-            _ if !mesh.faults().is_empty() => None,
+        let judged = match &mesh.uv1 {
+            _ if cancel.is_cancelled() || !mesh.faults().is_empty() => None,
             None => Some(None),
-            Some(uv1) => uv1_fault(mesh, uv1).map(Some),
+            Some(uv1) => uv1_fault(mesh, uv1, cancel).map(Some),
         };
-        (!cancel.is_cancelled()).then(judge)
+        (!cancel.is_cancelled()).then_some(judged)
     })?;
     Ok(meshes.into_iter().zip(judged).filter_map(|(mesh, fault)| Some((mesh, fault?))).collect())
 }
