@@ -11,6 +11,8 @@
 #[path = "../tests/unwrap/shapes.rs"]
 mod shapes;
 
+extern crate bevy_kiln;
+
 use bevy_kiln::artefact::StableId;
 use bevy_kiln::bake::{BakeSettings, CancelToken, unwrap_meshes};
 use bevy_kiln::scene::{Instance, LightmapRequest, Material, Mesh, Scene};

@@ -1,7 +1,7 @@
 //! Meshes of very different kinds, made by rule.
 
-use bevy_kiln::math::combine;
-use bevy_kiln::scene::{Indices, Mesh, Topology};
+use super::bevy_kiln::math::combine;
+use super::bevy_kiln::scene::{Indices, Mesh, Topology};
 use glam::{Quat, Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 

@@ -146,7 +146,7 @@ impl Bucket<'_> {
             return None;
         };
         let size = |wish: &Wish<'_>| {
-            let (size, got) = self.size(&packed, packing.density, wish.resolution);
+            let (size, got) = self.size(&packed, &packing, wish.resolution);
             if got < wish.resolution / SAME {
                 warnings.push(BakeWarning::LoweredDensity {
                     subject: Subject::Instance(wish.instance.name.clone()),
@@ -162,11 +162,13 @@ impl Bucket<'_> {
     }
 
     /// The rectangle of an object that asks for more texels than were packed for, and what it gets.
-    fn size(&self, packed: &Packed, density: f64, asked: f64) -> ([u32; 2], f64) {
+    fn size(&self, packed: &Packed, packing: &Packing, asked: f64) -> ([u32; 2], f64) {
+        let density = packing.density;
         let most = f64::from(self.limit - GAP);
         let longest = f64::from(packed.size[0].max(packed.size[1]));
         let finer = (asked / density).min(most / longest);
-        if finer <= SAME {
+        // What was packed with no more than the gap of one size must stay that size, or texels of two charts meet.
+        if packing.gap < WIDE_GAP || finer <= SAME {
             return (packed.size, density.min(asked));
         }
         (packed.size.map(|side| (f64::from(side) * finer * (1.0 - 1e-9)).ceil() as u32), density * finer)

@@ -5,7 +5,7 @@
 //! (`flatten`, `unroll`, `relax`), turned into their tightest boxes (`tight`) and packed on the texels of the object's
 //! rectangle (`pack`). What counts is the shape that the mesh has in the world (`shape`): instances of one shape share
 //! charts, and those of about one size the packing as well. The work is counted in visits of triangles and limited
-//! (`work`); beyond the limit each plane gets a chart, at worst each triangle. Same mesh, same bits: threads, the order
+//! (`work`); beyond the limit each plane gets a chart, at worst each triangle (`simple`). Same mesh, same bits: threads, the order
 //! of instances and the clock cannot matter. Where the texels go on pages is `atlas`'s.
 
 mod charts;
@@ -18,6 +18,11 @@ mod pack;
 mod patch;
 mod relax;
 mod shape;
+#[cfg(test)]
+#[allow(dead_code, reason = "the tests of the whole use all of it")]
+#[path = "../../../tests/unwrap/shapes.rs"]
+mod shapes;
+mod simple;
 mod split;
 mod surface;
 mod tight;
@@ -35,6 +40,8 @@ use crate::artefact::StableId;
 use crate::scene::{Fault, FaultKind, Instance, Mesh, Scene, Subject, UvChannel};
 use group::{Group, Unwrapped};
 use shape::{Shape, ShapeKey};
+#[cfg(test)]
+use crate as bevy_kiln;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use valid::uv1_fault;
