@@ -7,6 +7,7 @@
 
 use super::patch::Chart;
 use super::tight::TexelBox;
+use crate::bake::CancelToken;
 use crate::bake::atlas::{BLOCK, smallest};
 use glam::{DVec2, Vec2};
 
@@ -39,8 +40,8 @@ pub(super) struct Packed {
 }
 
 impl Packed {
-    /// Packs charts; gives the share of the density that might do where there is no room.
-    pub(super) fn new(charts: &[Boxed], packing: &Packing) -> Result<Self, f64> {
+    /// Packs charts; gives the share of the density that might do where there is no room, and any once cancelled.
+    pub(super) fn new(charts: &[Boxed], packing: &Packing, cancel: &CancelToken) -> Result<Self, f64> {
         let boxes: Vec<TexelBox> =
             charts.iter().map(|chart| TexelBox::new(chart.size, chart.area, packing.density)).collect();
         // In f64: a plain of kilometres at many texels has more than 32 bits.
@@ -57,7 +58,7 @@ impl Packed {
         if area > blocks * blocks {
             return Err((0.9 * blocks * blocks / area).sqrt());
         }
-        let placed = smallest(&cells, packing.limit / BLOCK).ok_or(0.93)?;
+        let placed = smallest(&cells, packing.limit / BLOCK, cancel).ok_or(0.93)?;
         let mut size = [1; 2];
         let mut origins = Vec::with_capacity(charts.len());
         for (corner, texels) in placed.into_iter().zip(&boxes) {
@@ -104,7 +105,8 @@ mod tests {
     fn cells_are_whole_blocks_and_apart() {
         let charts = rectangles(200);
         for gap in [4, 9] {
-            let packed = Packed::new(&charts, &Packing { density: 16.0, gap, limit: 4096 }).unwrap();
+            let packed =
+                Packed::new(&charts, &Packing { density: 16.0, gap, limit: 4096 }, &CancelToken::default()).unwrap();
             let area: u32 = packed.boxes.iter().map(|texels| texels.size[0] * texels.size[1]).sum();
             let fill = f64::from(area) / f64::from(packed.size[0] * packed.size[1]);
             assert!(fill > 0.35, "{fill}");
@@ -136,7 +138,7 @@ mod tests {
     fn what_has_no_room_says_what_share_of_the_density_might_do() {
         let charts = rectangles(200);
         let mut packing = Packing { density: 1000.0, gap: 4, limit: 256 };
-        let packed = (0..60).find_map(|_| match Packed::new(&charts, &packing) {
+        let packed = (0..60).find_map(|_| match Packed::new(&charts, &packing, &CancelToken::default()) {
             Ok(packed) => Some(packed),
             Err(share) => {
                 assert!(share > 0.0 && share < 1.0, "{share}");

@@ -102,7 +102,7 @@ fn unfolded(surface: &Surface, patch: &Patch) -> (Vec<[DVec2; 3]>, Vec<bool>) {
 }
 
 /// A triangle moved so that its edge from a corner to the next lies on two ends.
-fn laid(own: [DVec2; 3], corner: usize, [from, to]: [DVec2; 2]) -> [DVec2; 3] {
+pub(super) fn laid(own: [DVec2; 3], corner: usize, [from, to]: [DVec2; 2]) -> [DVec2; 3] {
     let along = own[(corner + 1) % 3] - own[corner];
     let wanted = to - from;
     let turn = DVec2::new(along.dot(wanted), along.perp_dot(wanted)).normalize_or(DVec2::X);
