@@ -57,7 +57,7 @@ pub mod prelude {
         AmbientMode, BakeFailed, BakeFinished, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps, EmissiveUnit,
         LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver, RangeWindow, SceneSettings,
     };
-    pub use crate::plugin::{BakedFolder, BakedLightmaps, KilnId, KilnPlugin, KilnSystems};
+    pub use crate::plugin::{BakedFolder, BakedLightmaps, KilnId, KilnPlugin, KilnSystems, LightmapFiltering};
 }
 
 /// The README's code, so that it stays true.

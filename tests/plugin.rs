@@ -3,6 +3,8 @@
 
 #[path = "plugin/environments.rs"]
 mod environments;
+#[path = "plugin/filtering.rs"]
+mod filtering;
 #[allow(dead_code, reason = "the command line's tests use the rest of it")]
 #[path = "support/glb.rs"]
 mod glb;

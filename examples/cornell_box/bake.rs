@@ -14,6 +14,12 @@ pub enum Status {
     Dark,
     Baking(Option<BakeProgress>),
     Lit(BakeFinished),
+    /// A folder is shown: so many of its things have been found in the scene.
+    Worn {
+        found: usize,
+        of: usize,
+        lightmaps: usize,
+    },
     Cancelled,
     /// What went wrong, as a sentence.
     Failed(String),
@@ -27,7 +33,19 @@ pub fn plugin(app: &mut App) {
         .add_observer(failed);
 }
 
-fn keys(keys: Res<ButtonInput<KeyCode>>, args: Res<Args>, mut status: ResMut<Status>, mut commands: Commands) {
+fn keys(
+    keys: Res<ButtonInput<KeyCode>>,
+    args: Res<Args>,
+    mut status: ResMut<Status>,
+    mut filtering: ResMut<LightmapFiltering>,
+    mut commands: Commands,
+) {
+    if keys.just_pressed(KeyCode::KeyF) {
+        *filtering = match *filtering {
+            LightmapFiltering::Bilinear => LightmapFiltering::Bicubic,
+            LightmapFiltering::Bicubic => LightmapFiltering::Bilinear,
+        };
+    }
     let is_baking = matches!(*status, Status::Baking(_));
     let is_loaded = !matches!(*status, Status::Loading);
     if keys.just_pressed(KeyCode::KeyB) && is_loaded && !is_baking {
@@ -44,7 +62,8 @@ fn keys(keys: Res<ButtonInput<KeyCode>>, args: Res<Args>, mut status: ResMut<Sta
 
 /// Asks for a bake; the game runs on.
 pub fn start(args: &Args, status: &mut Status, commands: &mut Commands) {
-    commands.trigger(BakeLightmaps { samples_per_texel: args.spp, density: args.density, ..default() });
+    let scene = SceneSettings { sky_radiance: args.stage.sky.into(), ..default() };
+    commands.trigger(BakeLightmaps { scene, samples_per_texel: args.spp, density: args.density, ..default() });
     *status = Status::Baking(None);
 }
 
@@ -56,7 +75,7 @@ impl std::fmt::Display for Status {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Loading => write!(f, "loading"),
-            Self::Dark => write!(f, "not baked: only the lamp is seen"),
+            Self::Dark => write!(f, "not baked: only what glows is seen"),
             Self::Baking(None) => write!(f, "baking"),
             Self::Baking(Some(at)) => {
                 let stage = match at.stage {
@@ -71,6 +90,7 @@ impl std::fmt::Display for Status {
                 write!(f, "baked: {} texels, {} paths, {:.1} s", done.texels, done.samples, done.seconds)?;
                 done.warnings.iter().try_for_each(|warning| write!(f, "\n{warning}"))
             }
+            Self::Worn { found, of, .. } => write!(f, "baked before: {found} of its {of} objects and lights are here"),
             Self::Cancelled => write!(f, "stopped"),
             Self::Failed(sentence) => write!(f, "{sentence}"),
         }

@@ -3,7 +3,8 @@
 use crate::bake::Status;
 use bevy::prelude::*;
 
-const HELP: &str = "B  bake     Esc  stop     C  clear     drag or arrow keys  turn     wheel  zoom     H  hide this";
+const HELP: &str =
+    "B  bake     Esc  stop     C  clear     F  filtering     drag or arrow keys  turn     wheel  zoom     H  hide this";
 
 /// All words.
 #[derive(Component)]

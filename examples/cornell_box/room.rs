@@ -1,18 +1,15 @@
 //! The room from its file, what of it takes part in a bake, and a camera that goes around it.
 
+use crate::args::Args;
 use crate::bake::Status;
 use bevy::asset::LoadState;
+use bevy::camera::Exposure;
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
 use bevy::input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollUnit};
 use bevy::prelude::*;
 use bevy::world_serialization::WorldInstanceReady;
 use bevy_kiln::prelude::*;
 use std::f32::consts::FRAC_PI_2;
-
-const FILE: &str = "scenes/cornell_box.glb";
-
-/// From the file's camera to the middle of the box [m].
-const DISTANCE: f32 = 10.8;
 
 /// How fast arrow keys turn the view [rad/s].
 const KEY_SPEED: f32 = 1.2;
@@ -33,7 +30,7 @@ struct Orbit {
 }
 
 pub fn plugin(app: &mut App) {
-    app.insert_resource(ClearColor(Color::BLACK))
+    app
         // Bevy adds 80 cd/m² of its own to everything otherwise.
         .insert_resource(GlobalAmbientLight::NONE)
         .add_systems(Startup, open)
@@ -41,25 +38,34 @@ pub fn plugin(app: &mut App) {
         .add_observer(ready);
 }
 
-fn open(assets: Res<AssetServer>, mut commands: Commands) {
-    let scene = assets.load(GltfAssetLabel::Scene(0).from_asset(FILE));
+fn open(args: Res<Args>, assets: Res<AssetServer>, mut commands: Commands) {
+    let stage = args.stage;
+    commands.insert_resource(ClearColor(stage.background));
+    let scene = assets.load(GltfAssetLabel::Scene(0).from_asset(stage.file));
     commands.insert_resource(Room(scene.clone()));
     // Everything in the file receives a lightmap, but for what `ready` marks otherwise.
     commands.spawn((WorldAssetRoot(scene), LightmapReceiver::default()));
     // Colours as they are, so that the screen can be held against a path-traced picture.
     commands.spawn((
         Camera3d::default(),
+        Exposure { ev100: args.ev100 },
         Tonemapping::None,
         DebandDither::Disabled,
-        Orbit { target: Vec3::ZERO, yaw: 0.0, pitch: 0.0, distance: DISTANCE },
+        Orbit { target: Vec3::ZERO, yaw: 0.0, pitch: 0.0, distance: stage.distance },
     ));
 }
 
-fn notice_failure(room: Res<Room>, assets: Res<AssetServer>, mut status: ResMut<Status>, mut commands: Commands) {
+fn notice_failure(
+    room: Res<Room>,
+    args: Res<Args>,
+    assets: Res<AssetServer>,
+    mut status: ResMut<Status>,
+    mut commands: Commands,
+) {
     let Some(LoadState::Failed(error)) = assets.get_load_state(&room.0) else { return };
     let reason = error.to_string();
     let reason = reason.lines().next().unwrap_or_default();
-    *status = Status::Failed(format!("{FILE} cannot be opened ({reason}); run from a whole clone"));
+    *status = Status::Failed(format!("{} cannot be opened ({reason}); run from a whole clone", args.stage.file));
     commands.remove_resource::<Room>();
 }
 
@@ -81,7 +87,7 @@ fn ready(
         *transform = *view;
         *projection = lens.clone();
         (orbit.yaw, orbit.pitch, _) = view.rotation.to_euler(EulerRot::YXZ);
-        orbit.target = view.translation + view.forward() * DISTANCE;
+        orbit.target = view.translation + view.forward() * orbit.distance;
     }
     // The lamp has no UV1, and its light drowns what falls on it.
     for (lamp, _) in names.iter().filter(|(_, name)| name.as_str() == "lamp") {

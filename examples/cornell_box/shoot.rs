@@ -1,4 +1,4 @@
-//! A run without a person: bakes, waits until the lightmaps are on the screen, takes its picture, ends.
+//! A run without a person: bakes or opens a folder, waits until the lightmaps are on the screen, takes its picture, ends.
 
 use crate::args::Args;
 use crate::bake::{Status, start};
@@ -63,8 +63,12 @@ fn proceed(
 ) {
     run.frames += 1;
     let next = match (run.step, &*status) {
-        (_, Status::Failed(sentence)) => return end(&mut commands, Err(sentence.clone())),
-        (Step::Open, Status::Dark) => {
+        (_, Status::Failed(sentence)) => return end(&args, &mut commands, Err(sentence.clone())),
+        (Step::Open, Status::Worn { found, of, lightmaps: worn }) if found == of && lightmaps.count() >= *worn => {
+            **overlay = Visibility::Hidden;
+            Step::Settle
+        }
+        (Step::Open, Status::Dark) if args.folder.is_none() => {
             start(&args, &mut status, &mut commands);
             Step::Bake
         }
@@ -82,7 +86,7 @@ fn proceed(
     run.frames = 0;
 }
 
-fn give_up(mut run: ResMut<Run>, status: Res<Status>, time: Res<Time<Real>>, mut commands: Commands) {
+fn give_up(mut run: ResMut<Run>, args: Res<Args>, status: Res<Status>, time: Res<Time<Real>>, mut commands: Commands) {
     if run.frames == 0 || (run.step == Step::Bake && status.is_changed()) {
         (run.frames, run.since) = (0, time.elapsed_secs());
     }
@@ -92,13 +96,13 @@ fn give_up(mut run: ResMut<Run>, status: Res<Status>, time: Res<Time<Real>>, mut
             Step::Bake => "the bake does not go on",
             Step::Settle | Step::Capture => "the window is not drawn",
         };
-        end(&mut commands, Err(format!("{what}; nothing has happened for {PATIENCE_SECONDS} s")));
+        end(&args, &mut commands, Err(format!("{what}; nothing has happened for {PATIENCE_SECONDS} s")));
     }
 }
 
 fn captured(captured: On<ScreenshotCaptured>, args: Res<Args>, mut commands: Commands) {
     let Some(path) = &args.screenshot else { return };
-    end(&mut commands, save(&captured.image, path));
+    end(&args, &mut commands, save(&captured.image, path));
 }
 
 fn save(image: &Image, path: &Path) -> Result<(), String> {
@@ -108,11 +112,11 @@ fn save(image: &Image, path: &Path) -> Result<(), String> {
     picture.to_rgb8().save(path).map_err(|error| failed(error.to_string()))
 }
 
-fn end(commands: &mut Commands, result: Result<(), String>) {
+fn end(args: &Args, commands: &mut Commands, result: Result<(), String>) {
     let exit = match result {
         Ok(()) => AppExit::Success,
         Err(sentence) => {
-            eprintln!("cornell_box: {sentence}");
+            eprintln!("{}: {sentence}", args.stage.name);
             AppExit::error()
         }
     };

@@ -54,7 +54,9 @@ mod baking;
 #[cfg(feature = "cli")]
 pub mod windowless;
 
-pub use display::{AppliedLightmaps, BakedFolder, BakedFolderError, BakedLightmaps, KilnId, stable_id};
+pub use display::{
+    AppliedLightmaps, BakedFolder, BakedFolderError, BakedLightmaps, KilnId, LightmapFiltering, stable_id,
+};
 
 #[cfg(feature = "bake")]
 pub use baking::{

@@ -9,6 +9,7 @@ mod live;
 mod mask;
 mod parity;
 mod picture;
+mod pieces;
 mod renderer;
 mod worn;
 

@@ -5,7 +5,7 @@ use crate::artefact::{MeshLayout, StableId};
 use crate::bake::{self, BakeWarning, Placement};
 use crate::output::{TexelFormat, texel_bytes};
 use crate::plugin::display::{
-    MutedLight, SharedLayout, Shown, attach, attached, detach, lightmap_sampler, mute_light, unmute_light,
+    FilteredBy, MutedLight, SharedLayout, Shown, attach, attached, detach, lightmap_sampler, mute_light, unmute_light,
 };
 use bevy::asset::RenderAssetUsages;
 use bevy::ecs::entity::EntityHashMap;
@@ -152,7 +152,7 @@ fn put_on(
         let lightmap = Lightmap {
             image: shown.pages[placement.page as usize].clone(),
             uv_rect: Rect { min: placement.uv_min.into(), max: placement.uv_max.into() },
-            bicubic_sampling: false,
+            ..default()
         };
         let layout = placement.mesh.and_then(|mesh| layouts.get(mesh)).cloned();
         let before = attached(world, entity);
@@ -162,7 +162,7 @@ fn put_on(
             if let Some(mut shown) = world.get_mut::<Lightmap>(entity) {
                 shown.uv_rect = lightmap.uv_rect;
             }
-        } else if let Err(why) = attach(world, entity, Shown { lightmap, layout }) {
+        } else if let Err(why) = attach(world, entity, Shown { lightmap, layout, filtered_by: FilteredBy::Plugin }) {
             written.warnings.push(format!("\"{}\" {why}, so it does not show its lightmap", placement.id));
             continue;
         }
@@ -315,7 +315,8 @@ mod tests {
         let layout = MeshLayout::from(&bake_of(TRIANGLE, 0.25, 1.0).meshes[0]);
         let lightmap =
             Lightmap { image: Handle::default(), uv_rect: Rect::new(0.0, 0.0, 1.0, 1.0), bicubic_sampling: true };
-        attach(&mut world, entity, Shown { lightmap, layout: Some(layout.into()) }).unwrap();
+        attach(&mut world, entity, Shown { lightmap, layout: Some(layout.into()), filtered_by: FilteredBy::Itself })
+            .unwrap();
         let before = world.get::<Mesh3d>(entity).unwrap().0.clone();
         assert_ne!(before, own);
         show(&mut world, entity, &bake_of(TRIANGLE, 0.5, 1.0));

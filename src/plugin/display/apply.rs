@@ -1,6 +1,7 @@
 //! Puts a loaded bake on the entities below a scene's root, as they come.
 
 use super::attach::{Shown, attach, detach};
+use super::filtering::FilteredBy;
 use super::mute::{MutedLight, mute_light, unmute_light};
 use super::{BakedFolder, stable_id};
 use crate::artefact::StableId;
@@ -116,10 +117,10 @@ fn find_jobs(
             let lightmap = Lightmap {
                 image: folder.pages[placement.page as usize].clone(),
                 uv_rect: Rect { min: placement.uv_min.into(), max: placement.uv_max.into() },
-                bicubic_sampling: false,
+                ..default()
             };
             let layout = placement.mesh.and_then(|mesh| folder.meshes.get(mesh as usize)).cloned();
-            (&placement.id, Shown { lightmap, layout })
+            (&placement.id, Shown { lightmap, layout, filtered_by: FilteredBy::Plugin })
         })
         .collect();
     let lights: HashSet<&StableId> = folder.manifest.baked_lights.iter().map(|light| &light.id).collect();

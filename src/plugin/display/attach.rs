@@ -5,6 +5,7 @@
 //! one is taken off for a few frames first. All of it must happen before `PostUpdate`, where Bevy looks for
 //! changed materials.
 
+use super::filtering::{FilteredBy, FollowsFiltering, LightmapFiltering};
 use super::relay::CannotLayOut;
 use super::wear::{self, SharedLayout};
 use bevy::mesh::MeshAccessError;
@@ -21,6 +22,8 @@ pub(crate) struct Shown {
     pub(crate) lightmap: Lightmap,
     /// How the bake laid out its mesh, if it did.
     pub(crate) layout: Option<SharedLayout>,
+    /// Who says how it is filtered.
+    pub(crate) filtered_by: FilteredBy,
 }
 
 /// A lightmap that goes on once the renderer has forgotten the one before.
@@ -78,7 +81,8 @@ impl From<CannotLayOut> for CannotAttach {
 /// on at once.
 pub(crate) fn attach(world: &mut World, entity: Entity, shown: Shown) -> Result<(), CannotAttach> {
     let own = check(world, entity)?;
-    let Shown { lightmap, layout } = shown;
+    let Shown { lightmap, layout, filtered_by } = shown;
+    let filtering = LightmapFiltering::of(world);
     let laid_out = match layout {
         Some(layout) => Some(wear::lay_out(world, own, layout)?),
         None => check_uv1(world, &own).map(|()| None)?,
@@ -88,6 +92,16 @@ pub(crate) fn attach(world: &mut World, entity: Entity, shown: Shown) -> Result<
         Some(laid_out) => wear::put_on(&mut entity, laid_out),
         None => wear::take_off(&mut entity),
     }
+    match filtered_by {
+        FilteredBy::Plugin => put_on(entity.insert(FollowsFiltering), filtering.apply(lightmap)),
+        #[cfg(feature = "bake")]
+        FilteredBy::Itself => put_on(entity.remove::<FollowsFiltering>(), lightmap),
+    }
+    Ok(())
+}
+
+/// Puts a lightmap on in place of the one that the renderer may know.
+fn put_on(entity: &mut EntityWorldMut, lightmap: Lightmap) {
     if entity.contains::<PendingLightmap>() {
         entity.insert(PendingLightmap { lightmap, frames_left: FRAMES_BETWEEN });
     } else if entity.contains::<Lightmap>() {
@@ -95,14 +109,23 @@ pub(crate) fn attach(world: &mut World, entity: Entity, shown: Shown) -> Result<
     } else {
         entity.insert(lightmap);
     }
-    touch_material(&mut entity);
-    Ok(())
+    touch_material(entity);
+}
+
+/// Puts an entity's lightmap on again if it is filtered otherwise.
+pub(super) fn refilter(entity: &mut EntityWorldMut, filtering: LightmapFiltering) {
+    let pending = entity.get::<PendingLightmap>().map(|pending| &pending.lightmap);
+    let Some(lightmap) = pending.or_else(|| entity.get::<Lightmap>()) else { return };
+    let filtered = filtering.apply(lightmap.clone());
+    if filtered.bicubic_sampling != lightmap.bicubic_sampling {
+        put_on(entity, filtered);
+    }
 }
 
 /// Takes the lightmap and its mesh off an entity, if it is there and has them.
 pub(crate) fn detach(world: &mut World, entity: Entity) {
     if let Ok(mut entity) = world.get_entity_mut(entity) {
-        entity.remove::<(Lightmap, PendingLightmap)>();
+        entity.remove::<(Lightmap, PendingLightmap, FollowsFiltering)>();
         wear::take_off(&mut entity);
         touch_material(&mut entity);
     }
@@ -114,7 +137,8 @@ pub(crate) fn attached(world: &World, entity: Entity) -> Option<Shown> {
     let entity = world.get_entity(entity).ok()?;
     let pending = entity.get::<PendingLightmap>().map(|pending| &pending.lightmap);
     let lightmap = pending.or_else(|| entity.get::<Lightmap>())?.clone();
-    Some(Shown { lightmap, layout: wear::worn_layout(entity).cloned() })
+    let filtered_by = if entity.contains::<FollowsFiltering>() { FilteredBy::Plugin } else { FilteredBy::Itself };
+    Some(Shown { lightmap, layout: wear::worn_layout(entity).cloned(), filtered_by })
 }
 
 /// Counts the frames of those that wait.

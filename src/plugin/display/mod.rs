@@ -3,6 +3,7 @@
 mod apply;
 mod attach;
 mod attribute;
+mod filtering;
 mod folder;
 mod mute;
 mod relay;
@@ -10,6 +11,7 @@ mod stable_path;
 mod wear;
 
 pub use apply::{AppliedLightmaps, BakedLightmaps};
+pub use filtering::LightmapFiltering;
 pub use folder::{BakedFolder, BakedFolderError};
 pub use stable_path::{KilnId, stable_id};
 
@@ -17,6 +19,8 @@ pub use stable_path::{KilnId, stable_id};
 pub(crate) use attach::{Shown, attach, attached, detach};
 #[cfg(feature = "bake")]
 pub(crate) use attribute::numbers;
+#[cfg(feature = "bake")]
+pub(crate) use filtering::FilteredBy;
 #[cfg(feature = "bake")]
 pub(crate) use folder::lightmap_sampler;
 #[cfg(feature = "bake")]
@@ -33,10 +37,17 @@ pub(super) fn plugin(app: &mut App) {
         .register_asset_loader(folder::BakedFolderLoader)
         .register_type::<KilnId>()
         .register_type::<BakedLightmaps>()
+        .register_type::<LightmapFiltering>()
+        .init_resource::<LightmapFiltering>()
         .add_observer(apply::take_off_with_component)
         .add_systems(
             PreUpdate,
-            (attach::attach_pending, wear::forget_copies_of_changed, apply::apply_baked_lightmaps)
+            (
+                attach::attach_pending,
+                wear::forget_copies_of_changed,
+                filtering::follow_filtering.run_if(resource_exists_and_changed::<LightmapFiltering>),
+                apply::apply_baked_lightmaps,
+            )
                 .chain()
                 .in_set(KilnSystems::Display),
         );

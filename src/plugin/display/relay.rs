@@ -24,7 +24,8 @@ impl From<MeshAccessError> for CannotLayOut {
 }
 
 /// The mesh with a layout: every vertex attribute copied to where the layout has its vertices, and UV1 beside them.
-/// Morph targets are left out, as what has them shows no lightmap.
+/// Morph targets are left out, as what has them shows no lightmap. A mesh without UV0 gets one of zeros: Bevy's shader
+/// (0.19) does not compile for a mesh that has UV1 alone.
 pub(crate) fn laid_out(source: &Mesh, layout: &MeshLayout) -> Result<Mesh, CannotLayOut> {
     if hash(source)? != layout.hash {
         return Err(CannotLayOut::Changed);
@@ -35,6 +36,9 @@ pub(crate) fn laid_out(source: &Mesh, layout: &MeshLayout) -> Result<Mesh, Canno
         if attribute.id != Mesh::ATTRIBUTE_UV_1.id {
             mesh.insert_attribute(*attribute, copied(values, &layout.vertices).ok_or(CannotLayOut::Changed)?);
         }
+    }
+    if !mesh.contains_attribute(Mesh::ATTRIBUTE_UV_0) {
+        mesh.insert_attribute(Mesh::ATTRIBUTE_UV_0, vec![[0.0_f32; 2]; layout.vertices.len()]);
     }
     mesh.insert_attribute(Mesh::ATTRIBUTE_UV_1, layout.uv1.clone());
     mesh.insert_indices(indices(layout));
@@ -129,6 +133,7 @@ mod tests {
             assert_eq!(new.primitive_topology(), PrimitiveTopology::TriangleList);
             assert_eq!(new.asset_usage, RenderAssetUsages::MAIN_WORLD);
             assert_eq!(new.indices(), Some(&Indices::U16(vec![0, 1, 2, 3, 4, 5])));
+            assert_eq!(new.attribute(Mesh::ATTRIBUTE_UV_0), Some(&Values::Float32x2(vec![[0.0; 2]; 6])));
         }
     }
 

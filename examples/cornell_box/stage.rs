@@ -1,0 +1,24 @@
+//! What one example shows. The examples that open a scene, bake it and look on differ in this alone.
+
+use bevy::color::Color;
+
+/// A scene and how it is looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage {
+    /// The example's name.
+    pub name: &'static str,
+    /// The scene, below the folder of assets. It has a camera, where the view begins.
+    pub file: &'static str,
+    /// From that camera to the point that the view turns about [m].
+    pub distance: f32,
+    /// Radiance of the sky, linear Rec. 709 [cd/m²].
+    pub sky: [f32; 3],
+    /// What is seen of it.
+    pub background: Color,
+    /// The camera's exposure value at ISO 100.
+    pub ev100: f32,
+    /// Width and height of a picture [pixels].
+    pub size: [u32; 2],
+    /// Width and height of the window that a person looks at [pixels].
+    pub window: [u32; 2],
+}
