@@ -15,7 +15,7 @@ pub(super) use smallest::smallest;
 
 use super::settings::Layout;
 use super::unwrap::LaidOut;
-use super::{BakeSettings, BakeWarning};
+use super::{BakeError, BakeSettings, BakeWarning, CancelToken};
 use crate::scene::{Scene, Subject};
 use crate::trace::{Receiver, Tracer};
 use glam::{DVec2, Vec2};
@@ -67,7 +67,12 @@ pub(super) struct Atlas<'a> {
 
 impl<'a> Atlas<'a> {
     /// Lays out the receivers of a scene that was laid out, which the tracer was compiled from.
-    pub(super) fn new(laid_out: &'a LaidOut<'_>, tracer: &'a Tracer, settings: &BakeSettings) -> Self {
+    pub(super) fn new(
+        laid_out: &'a LaidOut<'_>,
+        tracer: &'a Tracer,
+        settings: &BakeSettings,
+        cancel: &CancelToken,
+    ) -> Result<Self, BakeError> {
         let scene: &Scene = &laid_out.scene;
         let uv1 = |receiver: &Receiver| {
             scene.meshes[scene.instances[receiver.instance].mesh].uv1.as_deref().unwrap_or_default()
@@ -87,7 +92,7 @@ impl<'a> Atlas<'a> {
                     })
                 };
                 let sizes: Vec<[u32; 2]> = receivers.iter().map(&mut size_of).collect();
-                let (pages, places) = pack(&sizes, settings.page_limit());
+                let (pages, places) = pack(&sizes, settings.page_limit(), cancel).ok_or(BakeError::Cancelled)?;
                 (sizes, pages, places)
             }
         };
@@ -97,7 +102,7 @@ impl<'a> Atlas<'a> {
             .zip(places)
             .map(|((receiver, size), (page, origin))| Chart { receiver, page, origin, size, uv1: uv1(receiver) })
             .collect();
-        Self { pages, charts, warnings }
+        Ok(Self { pages, charts, warnings })
     }
 
     /// Share of the pages that so many covered texels are.
@@ -160,12 +165,12 @@ impl Kept<'_> {
 /// A page, and a rectangle's smallest corner on it [texels].
 type Place = (u32, [u32; 2]);
 
-/// Packs rectangles, in order of id, into as few and as small pages as a skyline allows.
-fn pack(sizes: &[[u32; 2]], limit: u32) -> (Vec<[u32; 2]>, Vec<Place>) {
+/// Packs rectangles, in order of id, into as few and as small pages as a skyline allows; `None` once cancelled.
+fn pack(sizes: &[[u32; 2]], limit: u32, cancel: &CancelToken) -> Option<(Vec<[u32; 2]>, Vec<Place>)> {
     let cells: Vec<[u32; 2]> = sizes.iter().map(|size| size.map(|side| (side + 2 * GUTTER).div_ceil(BLOCK))).collect();
     let mut pages = Vec::new();
     let mut places = Vec::with_capacity(sizes.len());
-    for ((page, corner), cell) in smallest::paged(&cells, limit / BLOCK).into_iter().zip(&cells) {
+    for ((page, corner), cell) in smallest::paged(&cells, limit / BLOCK, cancel)?.into_iter().zip(&cells) {
         pages.resize(pages.len().max(page as usize + 1), [BLOCK; 2]);
         for axis in 0..2 {
             let end = (corner[axis] + cell[axis]) * BLOCK;
@@ -173,7 +178,7 @@ fn pack(sizes: &[[u32; 2]], limit: u32) -> (Vec<[u32; 2]>, Vec<Place>) {
         }
         places.push((page, corner.map(|block| block * BLOCK + GUTTER)));
     }
-    (pages, places)
+    Some((pages, places))
 }
 
 #[cfg(test)]
@@ -185,7 +190,7 @@ mod tests {
     fn rectangles_keep_their_distance_and_stay_on_their_page() {
         let sizes: Vec<[u32; 2]> =
             (0..200).map(|key| [0, 1].map(|axis| 2 + (combine(key, axis) % 190) as u32)).collect();
-        let (pages, places) = pack(&sizes, 4096);
+        let (pages, places) = pack(&sizes, 4096, &CancelToken::default()).unwrap();
         assert_eq!(pages.len(), 1);
         let area: u32 = sizes.iter().map(|[width, height]| width * height).sum();
         let fill = f64::from(area) / f64::from(pages[0][0] * pages[0][1]);
@@ -207,8 +212,15 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_goes_to_another_page() {
-        let (pages, places) = pack(&[[3000, 3000]; 3], 4096);
+        let (pages, places) = pack(&[[3000, 3000]; 3], 4096, &CancelToken::default()).unwrap();
         assert_eq!(pages.len(), 3);
         assert_eq!(places.iter().map(|(page, _)| *page).collect::<Vec<_>>(), [0, 1, 2]);
+    }
+
+    #[test]
+    fn cancelled_is_none() {
+        let cancel = CancelToken::default();
+        cancel.cancel();
+        assert!(pack(&[[3000, 3000]; 3], 4096, &cancel).is_none());
     }
 }

@@ -31,7 +31,7 @@ impl TexelLayout {
         let workers = Workers::new(settings.threads, &(), cancel)?;
         let laid_out = LaidOut::new(scene, settings, &workers)?;
         let Compiled { tracer, faults, .. } = Compiled::new(&laid_out.scene, &settings.transport);
-        let atlas = Atlas::new(&laid_out, &tracer, settings);
+        let atlas = Atlas::new(&laid_out, &tracer, settings, cancel)?;
         let faults = laid_out.without_solved(faults).into_iter().map(BakeWarning::from);
         let warnings = faults.chain(laid_out.warnings.iter().chain(&atlas.warnings).cloned()).collect();
         Ok(Self {

@@ -93,7 +93,7 @@ pub fn bake_lightmap(
     let Compiled { tracer, faults, census } = Compiled::new(scene, &settings.transport);
     let faults = laid_out.without_solved(faults);
     refuse_what_cannot_be_baked(&tracer, &faults)?;
-    let atlas = Atlas::new(&laid_out, &tracer, settings);
+    let atlas = Atlas::new(&laid_out, &tracer, settings, cancel)?;
     let Sites { seen: sites, hidden, warnings: of_uv1 } = Sites::new(scene, &tracer, &atlas, settings, &workers)?;
     refuse_endless_texels(scene, &tracer, &settings.transport, &sites)?;
     let work = workers.gather(

@@ -71,7 +71,7 @@ impl BakePlan {
         let Compiled { tracer, faults, census } = Compiled::new(scene, &settings.transport);
         let faults = laid_out.without_solved(faults);
         refuse_what_cannot_be_baked(&tracer, &faults)?;
-        let atlas = Atlas::new(&laid_out, &tracer, settings);
+        let atlas = Atlas::new(&laid_out, &tracer, settings, &cancel)?;
         let Sites { seen: sites, warnings: of_uv1, .. } = Sites::new(scene, &tracer, &atlas, settings, &workers)?;
         refuse_endless_texels(scene, &tracer, &settings.transport, &sites)?;
         let mut warnings: Vec<BakeWarning> = faults.into_iter().map(BakeWarning::from).collect();

@@ -62,7 +62,7 @@ pub struct RelativeError {
 pub struct Denoised {
     /// Of what was measured.
     pub before: RelativeError,
-    /// Of what is shown: the noise that is left, and what was blurred.
+    /// Of what is shown: the noise that is left. What was blurred is not in it.
     pub after: RelativeError,
 }
 

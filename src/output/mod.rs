@@ -14,6 +14,7 @@ mod lightmap;
 mod overview;
 mod picture;
 mod png;
+mod reference;
 mod rgb9e5;
 mod safe_write;
 #[cfg(test)]
@@ -27,5 +28,6 @@ pub use format::{OutputFormat, TexelFormat, UnknownFormat};
 pub use ktx2::ktx2_bytes;
 pub use lightmap::{WrittenLightmap, write_lightmap};
 pub use picture::write_picture;
+pub use reference::{ReferenceError, ReferenceFault, compare_with_reference};
 pub use texels::{Encoded, texel_bytes};
 pub use tone::{Look, ToneCurve};

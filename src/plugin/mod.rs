@@ -34,6 +34,10 @@
 //! [`LightBlocker`], on the thing or on anything above it; without a receiver anywhere every mesh receives. What
 //! a folder of the `kiln` command holds goes on a scene as [`BakedLightmaps`] beside its root.
 //!
+//! A mesh without a usable second UV set is given one by the bake, which splits it along the borders of its charts.
+//! While the bake is shown, the entity's `Mesh3d` holds such a copy; it gets its own mesh back with `ClearLightmaps` or
+//! when [`BakedLightmaps`] goes. A game that changes a mesh after its bake sees the change when it is baked again.
+//!
 //! Lights, materials and skies are read as Bevy shows them. What shines from all around is a camera's
 //! `EnvironmentMapLight`, or the picture in [`SceneSettings::environment`]. A `RectLight` is baked in any case, but
 //! Bevy draws it only with its own feature `area_light_luts`. Bevy's glTF loader gives lights without a range one of

@@ -93,3 +93,6 @@ impl Tracer {
         left
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -139,9 +139,8 @@ fn texels(lightmap: &Lightmap, prefix: &str) -> Vec<[Vec3; 2]> {
     let mut texels = Vec::new();
     for place in lightmap.placements.iter().filter(|place| place.id.as_str().starts_with(prefix)) {
         let page = &lightmap.pages[place.page as usize];
-        let texel = |uv: [f32; 2]| {
-            [(uv[0] * page.width as f32).round() as u32, (uv[1] * page.height as f32).round() as u32]
-        };
+        let texel =
+            |uv: [f32; 2]| [(uv[0] * page.width as f32).round() as u32, (uv[1] * page.height as f32).round() as u32];
         let ([left, top], [right, bottom]) = (texel(place.uv_min), texel(place.uv_max));
         let places = (top..bottom).flat_map(|y| (left..right).map(move |x| (y * page.width + x) as usize));
         texels.extend(

@@ -3,8 +3,11 @@
 
 mod check;
 mod faulty;
+mod fuzz;
 mod shapes;
 mod shared;
+
+extern crate bevy_kiln;
 
 use bevy_kiln::artefact::StableId;
 use bevy_kiln::bake::{BakeSettings, CancelToken, TexelLayout, UnwrapMethod};

@@ -1,7 +1,7 @@
 //! Meshes of very different kinds, made by rule.
 
-use bevy_kiln::math::combine;
-use bevy_kiln::scene::{Indices, Mesh, Topology};
+use super::bevy_kiln::math::combine;
+use super::bevy_kiln::scene::{Indices, Mesh, Topology};
 use glam::{Quat, Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
@@ -172,6 +172,23 @@ pub fn clutter(leaves: u64) -> Mesh {
         all.positions.extend([corner(0.0, 0.0), corner(1.0, 0.3), corner(0.9, 1.0), corner(-0.1, 0.8)]);
         let Indices::U32(indices) = &mut all.indices else { unreachable!("made here") };
         indices.extend([0, 1, 2, 0, 2, 3].map(|corner| corner + first));
+    }
+    all
+}
+
+/// Crates of six faces of `cells`² quads, each turned its own way, beside each other.
+pub fn crates(count: u64, cells: u32) -> Mesh {
+    let mut all = mesh("crates", vec![], vec![]);
+    let one = cuboid("", Vec3::splat(-0.5), Vec3::ONE, cells);
+    for number in 0..count {
+        let part = |next: u64| unit(0x1000_0000 + 8 * number + next);
+        let turn = Quat::from_xyzw(part(0) - 0.5, part(1) - 0.5, part(2) - 0.5, part(3) - 0.5).normalize();
+        let size = 0.3 * (0.5 + part(4));
+        let mut crate_ = one.clone();
+        for position in &mut crate_.positions {
+            *position = turn * (size * *position) + Vec3::new((number % 64) as f32, 0.0, (number / 64) as f32);
+        }
+        join(&mut all, &crate_);
     }
     all
 }

@@ -1,6 +1,7 @@
 //! Cells put into as small a rectangle as can be found, or onto as many pages as they need. All in whole blocks.
 
 use super::skyline::Skyline;
+use crate::bake::CancelToken;
 use std::cmp::Reverse;
 
 /// Widths that are tried, over the root of the area.
@@ -9,8 +10,9 @@ const WIDTHS: [f64; 8] = [0.75, 0.87, 1.0, 1.05, 1.11, 1.18, 1.3, 1.5];
 /// Cells beyond which one width must do.
 const FEW: usize = 5000;
 
-/// The corner of each cell in the smallest of several packings; `None` if `limit` × `limit` has no room for them.
-pub(crate) fn smallest(cells: &[[u32; 2]], limit: u32) -> Option<Vec<[u32; 2]>> {
+/// The corner of each cell in the smallest of several packings; `None` if `limit` × `limit` has no room for them, or
+/// once cancelled.
+pub(crate) fn smallest(cells: &[[u32; 2]], limit: u32, cancel: &CancelToken) -> Option<Vec<[u32; 2]>> {
     let area: f64 = cells.iter().map(|[width, height]| f64::from(*width) * f64::from(*height)).sum();
     let widest = cells.iter().map(|cell| cell[0]).max().unwrap_or(1);
     if widest > limit {
@@ -27,28 +29,32 @@ pub(crate) fn smallest(cells: &[[u32; 2]], limit: u32) -> Option<Vec<[u32; 2]>> 
         if width == limit && least.is_some() {
             continue;
         }
-        if let Some((corners, taken)) = placed(cells, &order, [width, limit])
+        if let Some((corners, taken)) = placed(cells, &order, [width, limit], cancel)
             && least.as_ref().is_none_or(|(least, _)| taken < *least)
         {
             least = Some((taken, corners));
         }
     }
-    least.map(|(_, corners)| corners)
+    least.filter(|_| !cancel.is_cancelled()).map(|(_, corners)| corners)
 }
 
 /// Page and corner of each cell; none is wider or higher than `limit`. All pages but the last are as full as can be.
-pub(crate) fn paged(cells: &[[u32; 2]], limit: u32) -> Vec<(u32, [u32; 2])> {
+/// `None` once cancelled.
+pub(crate) fn paged(cells: &[[u32; 2]], limit: u32, cancel: &CancelToken) -> Option<Vec<(u32, [u32; 2])>> {
     let mut places = vec![(0, [0; 2]); cells.len()];
     let mut rest: Vec<usize> = (0..cells.len()).collect();
     for page in 0.. {
         let of_rest: Vec<[u32; 2]> = rest.iter().map(|&index| cells[index]).collect();
-        if let Some(corners) = smallest(&of_rest, limit) {
+        if let Some(corners) = smallest(&of_rest, limit, cancel) {
             rest.iter().zip(corners).for_each(|(&index, corner)| places[index] = (page, corner));
             break;
         }
         let mut skyline = Skyline::new(limit, limit);
         let mut is_placed = vec![false; rest.len()];
         for index in tallest_first(&of_rest) {
+            if cancel.is_cancelled() {
+                return None;
+            }
             if let Some(corner) = skyline.place(of_rest[index]) {
                 places[rest[index]] = (page, corner);
                 is_placed[index] = true;
@@ -57,7 +63,7 @@ pub(crate) fn paged(cells: &[[u32; 2]], limit: u32) -> Vec<(u32, [u32; 2])> {
         let mut placed = is_placed.iter();
         rest.retain(|_| placed.next() == Some(&false));
     }
-    places
+    Some(places)
 }
 
 fn tallest_first(cells: &[[u32; 2]]) -> Vec<usize> {
@@ -66,12 +72,20 @@ fn tallest_first(cells: &[[u32; 2]]) -> Vec<usize> {
     order
 }
 
-/// Corners on a strip, and the area that is taken.
-fn placed(cells: &[[u32; 2]], order: &[usize], [width, limit]: [u32; 2]) -> Option<(Vec<[u32; 2]>, u64)> {
+/// Corners on a strip, and the area that is taken; `None` if there is no room, or once cancelled.
+fn placed(
+    cells: &[[u32; 2]],
+    order: &[usize],
+    [width, limit]: [u32; 2],
+    cancel: &CancelToken,
+) -> Option<(Vec<[u32; 2]>, u64)> {
     let mut skyline = Skyline::new(width, limit);
     let mut corners = vec![[0; 2]; cells.len()];
     let mut size = [0; 2];
     for &index in order {
+        if cancel.is_cancelled() {
+            return None;
+        }
         let corner = skyline.place(cells[index])?;
         corners[index] = corner;
         for axis in 0..2 {

@@ -36,13 +36,10 @@ use texels::Texels;
 use window::{Reached, Window};
 
 /// How far a texel looks for others like it, first and then [texels].
-const RADII: [f32; 2] = [4.6, 7.5];
+const RADII: [f32; 2] = [4.6, 8.0];
 
 /// How far a texel may be moved, in standard errors.
 const REACH: f32 = 4.0;
-
-/// How far squared biases are averaged [texels].
-const BIAS_RADIUS: f32 = 3.0;
 
 /// Takes the noise out of the pages; says how much there was and how much is left.
 pub(super) fn denoise(fields: &mut [Field], workers: &Workers<'_>) -> Result<Denoised, BakeError> {
@@ -86,21 +83,8 @@ fn denoise_page(field: &mut Field, workers: &Workers<'_>) -> Result<(), BakeErro
     let filtered = filtered(&texels, &second, workers, |half, reached| {
         filter(&texels, &fitted[half], 1 - half, reached, RADII[1])
     })?;
-    // Both halves are off by the same bias and by independent noise.
-    let mut squared_bias = vec![Vec3::ZERO; field.value.len()];
-    for (&index, [first, second]) in texels.measured.iter().zip(&filtered) {
-        let [a, b] = [&texels.halves[0][index], &texels.halves[1][index]];
-        squared_bias[index] = (first.fitted.value - *b) * (second.fitted.value - *a);
-    }
-    let near = Window::new(BIAS_RADIUS);
-    let biases = workers.gather_quietly(&texels.measured, |&index, cancel| {
-        live(cancel)?;
-        let reached = near.reach(&texels, index);
-        let sum: Vec3 = reached.iter().map(|other| squared_bias[other.index]).sum();
-        Some((sum / reached.len() as f32).max(Vec3::ZERO))
-    })?;
-    for ((&index, halves), bias) in texels.measured.iter().zip(&filtered).zip(biases) {
-        let [value, residual] = merged(&texels, field, index, halves, bias);
+    for (&index, halves) in texels.measured.iter().zip(&filtered) {
+        let [value, residual] = merged(&texels, field, index, halves);
         field.value[index] = value;
         field.residual[index] = residual;
     }
@@ -146,7 +130,7 @@ fn filter(texels: &Texels, looks: &Looks<'_>, half: usize, reached: &[Reached], 
 }
 
 /// The mean of both halves within what is allowed, and its standard error.
-fn merged(texels: &Texels, field: &Field, index: usize, halves: &[Filtered; 2], bias: Vec3) -> [Vec3; 2] {
+fn merged(texels: &Texels, field: &Field, index: usize, halves: &[Filtered; 2]) -> [Vec3; 2] {
     let [first, second] = halves;
     let measured = field.value[index];
     // A half has twice the variance of the whole.
@@ -154,7 +138,7 @@ fn merged(texels: &Texels, field: &Field, index: usize, halves: &[Filtered; 2], 
     let low = first.range[0].min(second.range[0]).max(measured - reach);
     let high = first.range[1].max(second.range[1]).min(measured + reach);
     let value = (0.5 * (first.fitted.value + second.fitted.value)).max(low.min(measured)).min(high.max(measured));
-    let residual = root(0.25 * (first.fitted.variance + second.fitted.variance) + bias);
+    let residual = root(0.25 * (first.fitted.variance + second.fitted.variance));
     let is_exact = field.stderr[index].cmpeq(Vec3::ZERO);
     [Vec3::select(is_exact, measured, value), Vec3::select(is_exact, Vec3::ZERO, residual)]
 }

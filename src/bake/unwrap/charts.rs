@@ -1,8 +1,9 @@
 //! A surface cut into charts: few, compact ones where it can be, and simple ones where that would take too long.
 
-use super::flatten::{Limits, alone, along, flatten, is_sound};
+use super::flatten::{Limits, alone, flatten};
 use super::merge::merge;
 use super::patch::{Chart, Patch};
+use super::simple::simple;
 use super::split::split;
 use super::surface::Surface;
 use super::work::Work;
@@ -11,9 +12,6 @@ use rayon::prelude::*;
 
 /// Triangles beyond which nothing but the simple unwrap is tried.
 const MOST_TRIANGLES: usize = 4_000_000;
-
-/// Cosine within which neighbours lie in one plane.
-const PLANAR: f64 = 1.0 - 1e-8;
 
 /// How a mesh was unwrapped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -96,25 +94,6 @@ fn of_patch(
     }
     let charts = merge(surface, &whole, charts, &mut Work::new(whole.len(), cancel));
     (!cancel.is_cancelled()).then_some((charts, method))
-}
-
-/// One chart for each planar region of a patch that is sound, and one for each triangle of the others.
-fn simple(surface: &Surface, patch: &Patch, cancel: &CancelToken) -> Option<Vec<Chart>> {
-    let normal = |triangle: u32| surface.normals[patch.triangles[triangle as usize] as usize];
-    let labels = patch.connected(|a, b| normal(a).dot(normal(b)) > PLANAR);
-    let mut charts = Vec::new();
-    for region in patch.split_by(&labels) {
-        if cancel.is_cancelled() {
-            return None;
-        }
-        let (axis, least) = region.cone(surface);
-        let seen = (least > 0.999).then(|| along(surface, &region, axis));
-        match seen.filter(|seen| is_sound(surface, seen, &Limits::ALONE, &mut Work::new(region.len(), cancel))) {
-            Some(chart) => charts.push(chart),
-            None => charts.extend(region.triangles.iter().map(|&triangle| alone(surface, triangle))),
-        }
-    }
-    Some(charts)
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use super::relax::relax;
 use super::surface::Surface;
 use super::unroll::unroll;
 use super::work::Work;
+use crate::bake::CancelToken;
 use glam::{DVec2, DVec3};
 
 /// Stretch up to which a layout is taken: 1 where lengths are kept, and the larger of the factor and its inverse where
@@ -37,7 +38,7 @@ const BAD_SHARE: f64 = 1e-3;
 const FLAT: f64 = 0.966;
 
 /// Triangles beyond which a patch is parted rather than relaxed.
-const MOST_RELAXED: usize = 100_000;
+const MOST_RELAXED: usize = 400_000;
 
 /// Lays a patch out; `None` if it must be parted.
 pub(super) fn flatten(surface: &Surface, patch: &Patch, limits: &Limits, work: &mut Work<'_>) -> Option<Chart> {
@@ -108,6 +109,9 @@ fn double_area([a, b, c]: [DVec2; 3]) -> f64 {
 
 /// Whether nothing is turned over, stretched much, or over each other.
 pub(super) fn is_sound(surface: &Surface, chart: &Chart, limits: &Limits, work: &mut Work<'_>) -> bool {
+    if !chart.points.iter().all(|point| point.is_finite()) {
+        return false;
+    }
     let (mut sum, mut bad, mut area) = (0.0, 0.0, 0.0);
     for (&triangle, flat) in chart.triangles.iter().zip(chart.flat()) {
         let stretch = stretch(isometric(surface.triangle(triangle)), flat);
@@ -124,7 +128,7 @@ pub(super) fn is_sound(surface: &Surface, chart: &Chart, limits: &Limits, work: 
     if sum > limits.mean * area || bad > BAD_SHARE * area {
         return false;
     }
-    work.takes(4 * chart.triangles.len() as u64) && !folds(chart)
+    work.takes(4 * chart.triangles.len() as u64) && !folds(chart, work.token())
 }
 
 fn surface_scale([a, b, c]: [DVec2; 3]) -> f64 {
@@ -132,7 +136,7 @@ fn surface_scale([a, b, c]: [DVec2; 3]) -> f64 {
 }
 
 /// Whether triangles of a chart lie over each other.
-fn folds(chart: &Chart) -> bool {
+fn folds(chart: &Chart, cancel: &CancelToken) -> bool {
     if chart.triangles.len() == 1 {
         return false;
     }
@@ -141,7 +145,7 @@ fn folds(chart: &Chart) -> bool {
         .iter()
         .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &point| (low.min(point), high.max(point)));
     let flat: Vec<[DVec2; 3]> = chart.flat().collect();
-    !Overlaps::find(&flat, 1e-7 * (high - low).max_element()).is_empty()
+    !Overlaps::find(&flat, 1e-7 * (high - low).max_element(), cancel).is_empty()
 }
 
 /// By how much lengths change between two layouts of a triangle: the largest factor or inverse. Infinite where the

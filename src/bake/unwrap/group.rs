@@ -71,14 +71,12 @@ impl Group<'_> {
         }
         let mut wishes = self.wishes(settings);
         while !wishes.is_empty() {
-            if cancel.is_cancelled() {
-                return None;
-            }
             let coarsest = wishes[0].resolution;
             let rest = wishes.split_off(wishes.partition_point(|wish| wish.resolution <= FINER * coarsest));
             let bucket =
                 Bucket { mesh, surface: &surface, charts: &charts, wishes: &wishes, limit: settings.page_limit() };
-            match bucket.pack(&mut unwrapped.warnings) {
+            match bucket.pack(&mut unwrapped.warnings, cancel) {
+                _ if cancel.is_cancelled() => return None,
                 Some((laid_out, sizes)) => {
                     unwrapped.meshes.push((LaidOutMesh { source: self.mesh, method, ..laid_out }, sizes));
                 }
@@ -123,16 +121,19 @@ struct Bucket<'a> {
 }
 
 impl Bucket<'_> {
-    /// The mesh with its UV1 and the rectangle of each object; `None` if no page has room for the charts.
-    fn pack(&self, warnings: &mut Vec<BakeWarning>) -> Option<Taken> {
+    /// The mesh with its UV1 and the rectangle of each object; `None` if no page has room for the charts, or once
+    /// cancelled.
+    fn pack(&self, warnings: &mut Vec<BakeWarning>, cancel: &CancelToken) -> Option<Taken> {
         let coarsest = self.wishes[0].resolution;
         let is_mixed = self.wishes.iter().any(|wish| wish.resolution > SAME * coarsest);
         let mut packing = Packing { density: coarsest, gap: if is_mixed { WIDE_GAP } else { GAP }, limit: self.limit };
-        let packed = (0..ATTEMPTS).find_map(|_| match Packed::new(self.charts, &packing) {
-            Ok(packed) => Some(packed),
-            Err(share) => {
-                packing.density *= share.clamp(1e-6, 0.97);
-                None
+        let packed = (0..ATTEMPTS).take_while(|_| !cancel.is_cancelled()).find_map(|_| {
+            match Packed::new(self.charts, &packing, cancel) {
+                Ok(packed) => Some(packed),
+                Err(share) => {
+                    packing.density *= share.clamp(1e-6, 0.97);
+                    None
+                }
             }
         });
         let Some(packed) = packed else {
@@ -145,7 +146,7 @@ impl Bucket<'_> {
             return None;
         };
         let size = |wish: &Wish<'_>| {
-            let (size, got) = self.size(&packed, packing.density, wish.resolution);
+            let (size, got) = self.size(&packed, &packing, wish.resolution);
             if got < wish.resolution / SAME {
                 warnings.push(BakeWarning::LoweredDensity {
                     subject: Subject::Instance(wish.instance.name.clone()),
@@ -161,11 +162,13 @@ impl Bucket<'_> {
     }
 
     /// The rectangle of an object that asks for more texels than were packed for, and what it gets.
-    fn size(&self, packed: &Packed, density: f64, asked: f64) -> ([u32; 2], f64) {
+    fn size(&self, packed: &Packed, packing: &Packing, asked: f64) -> ([u32; 2], f64) {
+        let density = packing.density;
         let most = f64::from(self.limit - GAP);
         let longest = f64::from(packed.size[0].max(packed.size[1]));
         let finer = (asked / density).min(most / longest);
-        if finer <= SAME {
+        // What was packed with no more than the gap of one size must stay that size, or texels of two charts meet.
+        if packing.gap < WIDE_GAP || finer <= SAME {
             return (packed.size, density.min(asked));
         }
         (packed.size.map(|side| (f64::from(side) * finer * (1.0 - 1e-9)).ceil() as u32), density * finer)

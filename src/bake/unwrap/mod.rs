@@ -5,7 +5,7 @@
 //! (`flatten`, `unroll`, `relax`), turned into their tightest boxes (`tight`) and packed on the texels of the object's
 //! rectangle (`pack`). What counts is the shape that the mesh has in the world (`shape`): instances of one shape share
 //! charts, and those of about one size the packing as well. The work is counted in visits of triangles and limited
-//! (`work`); beyond the limit each plane gets a chart, at worst each triangle. Same mesh, same bits: threads, the order
+//! (`work`); beyond the limit each plane gets a chart, at worst each triangle (`simple`). Same mesh, same bits: threads, the order
 //! of instances and the clock cannot matter. Where the texels go on pages is `atlas`'s.
 
 mod charts;
@@ -18,6 +18,11 @@ mod pack;
 mod patch;
 mod relax;
 mod shape;
+#[cfg(test)]
+#[allow(dead_code, reason = "the tests of the whole use all of it")]
+#[path = "../../../tests/unwrap/shapes.rs"]
+mod shapes;
+mod simple;
 mod split;
 mod surface;
 mod tight;
@@ -35,6 +40,8 @@ use crate::artefact::StableId;
 use crate::scene::{Fault, FaultKind, Instance, Mesh, Scene, Subject, UvChannel};
 use group::{Group, Unwrapped};
 use shape::{Shape, ShapeKey};
+#[cfg(test)]
+use crate as bevy_kiln;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use valid::uv1_fault;
@@ -210,12 +217,12 @@ fn faulty_meshes(scene: &Scene, receivers: &[&Instance], workers: &Workers<'_>) 
     let meshes: Vec<usize> = meshes.into_iter().collect();
     let judged = workers.gather_quietly(&meshes, |&index, cancel| {
         let mesh = &scene.meshes[index];
-        let judge = || match &mesh.uv1 {
-            _ if !mesh.faults().is_empty() => None,
+        let judged = match &mesh.uv1 {
+            _ if cancel.is_cancelled() || !mesh.faults().is_empty() => None,
             None => Some(None),
-            Some(uv1) => uv1_fault(mesh, uv1).map(Some),
+            Some(uv1) => uv1_fault(mesh, uv1, cancel).map(Some),
         };
-        (!cancel.is_cancelled()).then(judge)
+        (!cancel.is_cancelled()).then_some(judged)
     })?;
     Ok(meshes.into_iter().zip(judged).filter_map(|(mesh, fault)| Some((mesh, fault?))).collect())
 }

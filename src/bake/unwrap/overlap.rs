@@ -5,6 +5,7 @@
 //! small ones, or many in one corner, cost no more than others. Two convex shapes are apart if an edge of one has the
 //! other on its far side (the theorem of the separating axis, after Minkowski).
 
+use crate::bake::CancelToken;
 use glam::DVec2;
 use std::collections::BTreeSet;
 
@@ -23,22 +24,24 @@ const WORK_PER_TRIANGLE: u64 = 2000;
 pub(super) struct Overlaps {
     /// In ascending order, the smaller number first.
     pub(super) pairs: Vec<[u32; 2]>,
-    /// Whether the search ended before all pairs were looked at.
+    /// Whether the search ended before all pairs were looked at: enough were found, the work was done, or it was
+    /// cancelled.
     pub(super) is_cut: bool,
 }
 
 impl Overlaps {
     /// Finds triangles that lie over each other by more than `slack`, a length.
-    pub(super) fn find(triangles: &[[DVec2; 3]], slack: f64) -> Self {
+    pub(super) fn find(triangles: &[[DVec2; 3]], slack: f64, cancel: &CancelToken) -> Self {
         let mut search = Search {
             triangles,
+            cancel,
             slack,
             pairs: BTreeSet::new(),
             work: WORK_PER_TRIANGLE * (triangles.len() as u64 + 50),
         };
         let all: Vec<u32> = (0..triangles.len() as u32).filter(|&index| search.height(index) > slack).collect();
         search.sort(all, 0);
-        let is_cut = search.work == 0 || search.pairs.len() >= ENOUGH_PAIRS;
+        let is_cut = search.is_over();
         Self { pairs: search.pairs.into_iter().collect(), is_cut }
     }
 
@@ -50,6 +53,7 @@ impl Overlaps {
 
 struct Search<'a> {
     triangles: &'a [[DVec2; 3]],
+    cancel: &'a CancelToken,
     slack: f64,
     pairs: BTreeSet<[u32; 2]>,
     /// Comparisons left.
@@ -57,6 +61,10 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
+    fn is_over(&self) -> bool {
+        self.work == 0 || self.pairs.len() >= ENOUGH_PAIRS || self.cancel.is_cancelled()
+    }
+
     fn bounds(&self, index: u32) -> (DVec2, DVec2) {
         let [a, b, c] = self.triangles[index as usize];
         (a.min(b).min(c), a.max(b).max(c))
@@ -71,7 +79,7 @@ impl Search<'_> {
 
     fn sort(&mut self, some: Vec<u32>, depth: u32) {
         self.work = self.work.saturating_sub(some.len() as u64);
-        if self.work == 0 || self.pairs.len() >= ENOUGH_PAIRS {
+        if self.is_over() {
             return;
         }
         if some.len() <= LEAF || depth > 48 {
@@ -119,7 +127,7 @@ impl Search<'_> {
                     self.pairs.insert([first.min(second), first.max(second)]);
                 }
             }
-            if self.work == 0 || self.pairs.len() >= ENOUGH_PAIRS {
+            if self.is_over() {
                 return;
             }
         }
@@ -148,6 +156,10 @@ mod tests {
     use super::*;
     use crate::math::combine;
 
+    fn find(triangles: &[[DVec2; 3]], slack: f64) -> Overlaps {
+        Overlaps::find(triangles, slack, &CancelToken::default())
+    }
+
     fn grid(count: usize) -> Vec<[DVec2; 3]> {
         let point = |x: usize, y: usize| DVec2::new(x as f64, y as f64) / count as f64;
         (0..count * count)
@@ -164,24 +176,24 @@ mod tests {
     #[test]
     fn neighbours_do_not_overlap_and_a_planted_triangle_is_found() {
         let mut triangles = grid(40);
-        assert!(Overlaps::find(&triangles, 1e-9).is_empty());
+        assert!(find(&triangles, 1e-9).is_empty());
         triangles.push([DVec2::new(0.501, 0.5002), DVec2::new(0.502, 0.5003), DVec2::new(0.501, 0.5009)]);
-        let found = Overlaps::find(&triangles, 1e-9);
+        let found = find(&triangles, 1e-9);
         assert!(!found.pairs.is_empty() && found.pairs.iter().all(|pair| pair[1] == 3200), "{found:?}");
     }
 
     #[test]
     fn a_fold_is_found_and_so_is_a_copy() {
         let quad = [[DVec2::ZERO, DVec2::X, DVec2::ONE], [DVec2::ZERO, DVec2::ONE, DVec2::new(0.9, 0.1)]];
-        assert_eq!(Overlaps::find(&quad, 1e-9).pairs, [[0, 1]]);
-        assert_eq!(Overlaps::find(&[quad[0], quad[0]], 1e-9).pairs, [[0, 1]]);
+        assert_eq!(find(&quad, 1e-9).pairs, [[0, 1]]);
+        assert_eq!(find(&[quad[0], quad[0]], 1e-9).pairs, [[0, 1]]);
     }
 
     #[test]
     fn what_touches_within_the_slack_is_apart() {
         let beside = [[DVec2::ZERO, DVec2::X, DVec2::Y], [DVec2::X, DVec2::ONE, DVec2::new(-1e-7, 1.0)]];
-        assert!(Overlaps::find(&beside, 1e-6).is_empty());
-        assert!(!Overlaps::find(&beside, 1e-9).is_empty());
+        assert!(find(&beside, 1e-6).is_empty());
+        assert!(!find(&beside, 1e-9).is_empty());
     }
 
     /// Against the plain search through all pairs.
@@ -203,14 +215,22 @@ mod tests {
                 }
             }
         }
-        assert!(plain.len() > 50 && plain.len() < ENOUGH_PAIRS, "{}", plain.len());
-        let found = Overlaps::find(&triangles, 1e-9);
+        assert!(plain.len() > 30 && plain.len() < ENOUGH_PAIRS, "{}", plain.len());
+        let found = find(&triangles, 1e-9);
         assert_eq!(found.pairs, plain);
         assert!(!found.is_cut);
     }
 
     #[test]
     fn a_pile_ends_the_search() {
-        assert!(Overlaps::find(&vec![grid(1)[0]; 100_000], 1e-9).is_cut);
+        assert!(find(&vec![grid(1)[0]; 100_000], 1e-9).is_cut);
+    }
+
+    #[test]
+    fn cancelled_is_cut() {
+        let cancel = CancelToken::default();
+        cancel.cancel();
+        let found = Overlaps::find(&grid(40), 1e-9, &cancel);
+        assert!(found.is_cut && !found.is_empty());
     }
 }

@@ -146,3 +146,29 @@ fn places(mesh: &Mesh) -> Vec<u32> {
     };
     mesh.positions.iter().enumerate().map(place).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Indices;
+    use glam::{Affine3A, Vec3};
+
+    fn joined(positions: Vec<Vec3>, indices: Vec<u32>) -> usize {
+        let mesh = Mesh { positions, indices: Indices::U32(indices), ..Mesh::default() };
+        let surface = Surface::new(&mesh, &Shape::new(&Affine3A::IDENTITY));
+        surface.across.iter().filter(|&&half| half != NONE).count() / 2
+    }
+
+    #[test]
+    fn edges_join_by_place_and_not_across_creases() {
+        let square = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y].to_vec();
+        assert_eq!(joined(square.clone(), vec![0, 1, 2, 0, 2, 3]), 1);
+        let twice: Vec<Vec3> = square.iter().chain(&square).copied().collect();
+        assert_eq!(joined(twice, vec![0, 1, 2, 4, 6, 7]), 1, "vertices in one place are one");
+        assert_eq!(joined(square.clone(), vec![0, 1, 2, 0, 3, 2]), 0, "turned the other way");
+        let mut bent = square.clone();
+        bent[3] = Vec3::new(0.5, 0.5, 0.8);
+        assert_eq!(joined(bent, vec![0, 1, 2, 0, 2, 3]), 0, "a right angle");
+        assert_eq!(joined(square, vec![0, 1, 2, 0, 2, 3, 0, 2, 1, 0, 3, 2]), 2, "front and back by themselves");
+    }
+}

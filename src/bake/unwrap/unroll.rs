@@ -102,7 +102,7 @@ fn unfolded(surface: &Surface, patch: &Patch) -> (Vec<[DVec2; 3]>, Vec<bool>) {
 }
 
 /// A triangle moved so that its edge from a corner to the next lies on two ends.
-fn laid(own: [DVec2; 3], corner: usize, [from, to]: [DVec2; 2]) -> [DVec2; 3] {
+pub(super) fn laid(own: [DVec2; 3], corner: usize, [from, to]: [DVec2; 2]) -> [DVec2; 3] {
     let along = own[(corner + 1) % 3] - own[corner];
     let wanted = to - from;
     let turn = DVec2::new(along.dot(wanted), along.perp_dot(wanted)).normalize_or(DVec2::X);
@@ -110,4 +110,51 @@ fn laid(own: [DVec2; 3], corner: usize, [from, to]: [DVec2; 2]) -> [DVec2; 3] {
     moved[corner] = from;
     moved[(corner + 1) % 3] = to;
     moved
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::flatten::stretch;
+    use super::super::shape::Shape;
+    use super::*;
+    use crate::bake::CancelToken;
+    use crate::math::Portable;
+    use crate::scene::{Indices, Mesh};
+    use glam::{Affine3A, Vec3};
+
+    /// Two rings of vertices around an axis.
+    fn rings(count: u32, [lower, upper]: [f64; 2]) -> Surface {
+        let point = |index: u32| {
+            let (radius, height) = if index < count { (lower, 0.0) } else { (upper, 1.0) };
+            let (sin, cos) = Portable::sin_cos(TAU * f64::from(index % count) / f64::from(count));
+            Vec3::new((radius * cos) as f32, height, (-radius * sin) as f32)
+        };
+        let side = |index: u32| {
+            let next = (index + 1) % count;
+            [index, next, count + next, index, count + next, count + index]
+        };
+        let mesh = Mesh {
+            positions: (0..2 * count).map(point).collect(),
+            indices: Indices::U32((0..count).flat_map(side).collect()),
+            ..Mesh::default()
+        };
+        Surface::new(&mesh, &Shape::new(&Affine3A::IDENTITY))
+    }
+
+    #[test]
+    fn tubes_and_cones_come_off_in_one_piece() {
+        for radii in [[0.5, 0.5], [1.0, 0.3], [1.0, 0.0]] {
+            let surface = rings(24, radii);
+            let patches = Patch::whole(&surface);
+            assert_eq!(patches.len(), 1);
+            let cancel = CancelToken::default();
+            let chart = unroll(&surface, &patches[0], &mut Work::new(surface.len(), &cancel)).unwrap();
+            for (&triangle, flat) in chart.triangles.iter().zip(chart.flat()) {
+                let stretch = stretch(isometric(surface.triangle(triangle)), flat);
+                assert!(stretch < 1.0 + 1e-3, "{radii:?}: {stretch}");
+            }
+            let count = if radii[1] == 0.0 { 26 } else { 50 };
+            assert_eq!(chart.points.len(), count, "cut once, {radii:?}");
+        }
+    }
 }

@@ -4,6 +4,7 @@
 //! lie over each other. Rounding is forgiven: exporters write UV1 in `f32` or in 16 bits.
 
 use super::overlap::Overlaps;
+use crate::bake::CancelToken;
 use crate::scene::Mesh;
 use glam::{DVec2, Vec2};
 use thiserror::Error;
@@ -50,8 +51,8 @@ pub enum Uv1Fault {
     },
 }
 
-/// What is wrong with the UV1 of a mesh without other faults; `None` if it can be kept.
-pub(super) fn uv1_fault(mesh: &Mesh, uv1: &[Vec2]) -> Option<Uv1Fault> {
+/// What is wrong with the UV1 of a mesh without other faults; `None` if it can be kept. Means nothing once cancelled.
+pub(super) fn uv1_fault(mesh: &Mesh, uv1: &[Vec2], cancel: &CancelToken) -> Option<Uv1Fault> {
     let is_inside = |uv: &Vec2| uv.is_finite() && uv.min_element() >= -OUTSIDE && uv.max_element() <= 1.0 + OUTSIDE;
     if let Some(vertex) = uv1.iter().position(|uv| !is_inside(uv)) {
         return Some(Uv1Fault::Outside { vertex });
@@ -77,7 +78,7 @@ pub(super) fn uv1_fault(mesh: &Mesh, uv1: &[Vec2]) -> Option<Uv1Fault> {
     if bare > BARE_SHARE * area {
         return Some(Uv1Fault::WithoutArea { share: bare / area });
     }
-    let overlaps = Overlaps::find(&triangles, SLACK);
+    let overlaps = Overlaps::find(&triangles, SLACK, cancel);
     if overlaps.is_empty() {
         return None;
     }
@@ -97,7 +98,7 @@ mod tests {
             indices: Indices::U16(vec![0, 1, 2, 0, 2, 3, 3, 3, 1]),
             ..Mesh::default()
         };
-        uv1_fault(&mesh, &uv1.map(Vec2::from))
+        uv1_fault(&mesh, &uv1.map(Vec2::from), &CancelToken::default())
     }
 
     #[test]

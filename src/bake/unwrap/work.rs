@@ -23,6 +23,11 @@ impl<'a> Work<'a> {
         self.left > 0 && !self.cancel.is_cancelled()
     }
 
+    /// The switch that stops it.
+    pub(super) fn token(&self) -> &'a CancelToken {
+        self.cancel
+    }
+
     /// Whether some is left.
     pub(super) fn is_left(&self) -> bool {
         self.left > 0

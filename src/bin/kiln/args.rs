@@ -160,6 +160,10 @@ pub(crate) struct BakeArgs {
     pub(crate) error: Option<String>,
     #[arg(long, hide = true)]
     pub(crate) time: Option<String>,
+    /// Say how far the bake is from this one: a folder of the same scene and density, with many more samples and
+    /// --format exr
+    #[arg(long, value_name = "DIR")]
+    pub(crate) reference: Option<PathBuf>,
     /// Leave the noise in the texels
     #[arg(long)]
     pub(crate) no_denoise: bool,

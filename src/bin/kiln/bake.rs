@@ -6,7 +6,7 @@ use crate::progress::Show;
 use crate::scene;
 use crate::talk::{Talk, warn};
 use bevy_kiln::bake::{BakePlan, BakeReport, BakeSettings, CancelToken, Denoise, Jump, RelativeError, bake_lightmap};
-use bevy_kiln::output::{WrittenLightmap, write_lightmap};
+use bevy_kiln::output::{ReferenceError, WrittenLightmap, compare_with_reference, write_lightmap};
 use bevy_kiln::trace::Effect;
 use serde_json::json;
 
@@ -48,14 +48,27 @@ pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> 
         let (format, [rms, worst]) = (args.format, [error.rms, error.worst].map(|error| 100.0 * error));
         talk.say(format_args!("  {format}: rms error {rms:.3} %, worst texel {worst:.3} %"));
     }
+    let reference = args.reference.as_ref().map(|dir| compare_with_reference(&lightmap, dir)).transpose();
+    let reference = reference.map_err(Failure::failed)?;
+    if let Some(error) = reference {
+        let [before, after] = [error.before, error.after].map(|error| 100.0 * error);
+        talk.say(format_args!(
+            "  against the reference: rms error {before:.2} % as measured, {after:.2} % as repaired"
+        ));
+    }
     talk.say(format_args!("wrote {} files into {}", written.files.len(), args.output.display()));
     if args.json {
-        Talk::Out.say(summary(report, &written, &warnings));
+        Talk::Out.say(summary(report, &written, reference, &warnings));
     }
     Ok(())
 }
 
-fn summary(report: &BakeReport, written: &WrittenLightmap, warnings: &[String]) -> serde_json::Value {
+fn summary(
+    report: &BakeReport,
+    written: &WrittenLightmap,
+    reference: Option<ReferenceError>,
+    warnings: &[String],
+) -> serde_json::Value {
     let error = |error: &RelativeError| json!({ "mean": error.mean, "p95": error.p95, "max": error.max });
     json!({
         "texels": report.texels,
@@ -75,6 +88,7 @@ fn summary(report: &BakeReport, written: &WrittenLightmap, warnings: &[String]) 
             let jump = |jump: Jump| json!({ "p99": jump.p99, "max": jump.max });
             json!({ "joints": seams.joints, "before": jump(seams.before), "after": jump(seams.after) })
         }),
+        "reference": reference.map(|error| json!({ "before": error.before, "after": error.after })),
         "energy_balance": report.energy_balance,
         "clamped_light": report.clamped_light,
         "forced": {

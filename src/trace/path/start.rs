@@ -13,7 +13,7 @@ pub(crate) struct PathStart {
     pub(super) origin: Vec3,
     /// Unit normal that receives.
     pub(super) normal: Vec3,
-    /// Unit normal of the flat surface, on the side that receives.
+    /// Unit normal of the flat surface, on the side that receives; of the smooth one where the point was lifted to it.
     pub(super) geometric_normal: Vec3,
 }
 
@@ -34,7 +34,7 @@ impl PathStart {
         self.normal
     }
 
-    /// Unit normal of the flat surface, on the side that receives.
+    /// Unit normal of the surface that rays must leave, on the side that receives.
     pub(crate) fn geometric_normal(&self) -> Vec3 {
         self.geometric_normal
     }
@@ -90,7 +90,8 @@ impl Tracer {
         if lift.abs().cmple(shape.error).all() || self.accel.is_blocked(start.origin, start.origin + lift) {
             return start;
         }
-        PathStart { position: position + lift, origin: start.origin + lift, ..start }
+        // Off the flat triangle what it faces no longer matters; light from behind it is stopped by what it meets.
+        PathStart { position: position + lift, origin: start.origin + lift, geometric_normal: normal, ..start }
     }
 
     /// A start of paths at a point of the world. Within 1e-5 of the scene's extent from a surface the point counts as

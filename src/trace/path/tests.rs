@@ -6,7 +6,7 @@ use super::{PathStart, Tally};
 use crate::artefact::StableId;
 use crate::math::testing::{Random, mean_and_error, mean_within};
 use crate::math::{Frame, combine, square_to_cosine_hemisphere, square_to_triangle};
-use crate::scene::{Interior, Light, Material, PointLight, Scattering, Standard};
+use crate::scene::{DirectionalLight, Interior, Light, Material, PointLight, Scattering, Standard};
 use crate::trace::light::{End, LightContext};
 use crate::trace::mis::power_heuristic;
 use crate::trace::sampler::{Dimensions, Sampler};
@@ -290,4 +290,44 @@ fn a_path_that_starts_in_a_body_is_dimmed_from_its_start() {
     assert!((value(&clear, inside) - 1.0).length() < 1e-5, "{}", value(&clear, inside));
     assert_eq!(value(&dark, inside), Vec3::ZERO);
     assert_eq!(value(&dark, above), Vec3::ONE);
+}
+
+/// A coarse sphere with smooth normals in the sun. Where the sun grazes it, flat facets that face away from the sun, or
+/// stand in their neighbours' shade, are black although the smooth surface is lit: the terminator. Starts that are lifted
+/// to the smooth surface see the sun.
+#[test]
+fn smooth_surfaces_have_no_facets_along_the_edge_of_their_shade() {
+    let mut sphere = Shape::icosphere(2);
+    sphere.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    let mut scene = sphere.scene(Material::diffuse("black", Vec3::ZERO), Affine3A::IDENTITY);
+    scene.lights.push(Light::Directional(DirectionalLight {
+        id: StableId::new("sun"),
+        name: "sun".into(),
+        direction: Vec3::NEG_Y,
+        illuminance: Vec3::splat(std::f32::consts::PI),
+        angular_diameter: 0.0,
+    }));
+    let tracer = Tracer::new(&scene);
+    let transport = Transport::default();
+    let (mut lifted, mut flat, mut light) = (0.0, 0.0, 0.0);
+    for index in 0..20_000 {
+        let sampler = Sobol::new(5, index);
+        let [u, v, choice, _] = sampler.draw(Dimensions::Start);
+        let weights = square_to_triangle(Vec2::new(u, v)).to_array();
+        let triangle = (choice * tracer.triangle_count() as f32) as u32;
+        let normals = tracer.vertices(triangle).map(Vec3::normalize);
+        let smooth = tracer.start_on_smooth_triangle(triangle, weights, normals);
+        let cosine = smooth.normal().y;
+        if !(0.01..0.3).contains(&cosine) {
+            continue;
+        }
+        let shown =
+            |start: &PathStart| tracer.diffuse_radiance(start, &sampler, &transport, &mut Tally::default()).y - cosine;
+        lifted += shown(&smooth).abs();
+        flat += shown(&tracer.start_on_triangle(triangle, weights, smooth.normal())).abs();
+        light += cosine;
+    }
+    let [lifted, flat] = [lifted, flat].map(|wrong| wrong / light);
+    println!("of the light along the terminator, wrong: {lifted:.3} lifted, {flat:.3} flat");
+    assert!(lifted < 1e-3 && flat > 0.03, "{lifted} lifted, {flat} flat");
 }

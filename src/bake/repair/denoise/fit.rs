@@ -6,7 +6,7 @@ use glam::Vec3;
 const TERMS: usize = 6;
 
 /// What holds slopes and curvature where the texels do not, in weights of one texel at the window's rim.
-const RIDGE: f64 = 0.3;
+const RIDGE: f64 = 0.003;
 
 /// A paraboloid in the middle of its window.
 #[derive(Clone, Copy, Debug, Default)]

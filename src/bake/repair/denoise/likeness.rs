@@ -35,7 +35,7 @@ impl<'a> Looks<'a> {
         for (&index, fit) in texels.measured.iter().zip(fits) {
             fitted[index] = fit;
         }
-        Self { texels, fitted, noise: 0.5, excess: 4.0 }
+        Self { texels, fitted, noise: 0.5, excess: 3.5 }
     }
 
     /// How much two texels look alike, in [0, 1].

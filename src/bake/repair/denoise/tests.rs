@@ -135,6 +135,31 @@ fn light_that_is_rarely_found_is_not_lost() {
     assert!(after.value.iter().all(|value| value.min_element() >= 0.0));
 }
 
+/// Weights that know the noise that they weigh keep it, and make too little of what is left.
+#[test]
+fn weights_of_the_same_half_are_no_good() {
+    let field = noisy([48, 48], 21, 0.1, GREY);
+    let texels = Texels::new(&field);
+    let window = Window::new(RADII[0]);
+    let cancel = CancelToken::default();
+    let workers = Workers::new(None, &(), &cancel).unwrap();
+    let looks = [0, 1].map(|half| Looks::measured(&texels, half));
+    let ratio = |swapped: usize| {
+        let work = |half: usize, reached: &[Reached]| filter(&texels, &looks[half], half ^ swapped, reached, RADII[0]);
+        let (mut squares, mut variances) = (0.0, 0.0);
+        for halves in filtered(&texels, &window, &workers, work).unwrap() {
+            for half in halves {
+                squares += luminance(half.fitted.value - GREY(0.0, 0.0)).powi(2);
+                variances += luminance(root(half.fitted.variance)).powi(2);
+            }
+        }
+        f64::sqrt(squares / variances)
+    };
+    let [same, other] = [0, 1].map(ratio);
+    assert!((other - 1.0).abs() < 0.15, "{other}");
+    assert!(same > 1.05 * other, "{same} against {other}");
+}
+
 /// A plane split by a wall that no link crosses, dark behind it.
 fn split() -> Field {
     let mut field = noisy([24, 16], 9, 0.2, |x, _| if x < 12.0 { Vec3::ONE } else { Vec3::splat(0.9) });

@@ -73,8 +73,8 @@ impl Border {
         let [a, b] = other.ends.map(|end| self.parameter(end));
         let (from, to) = (a.min(b).max(0.0), a.max(b).min(1.0));
         let tolerance = self.tolerance.max(other.tolerance);
-        // Written so that what is no number is no overlap.
-        if !((to - from) * length > LEAST_OVERLAP * tolerance) {
+        let overlap = (to - from) * length;
+        if overlap.is_nan() || overlap <= LEAST_OVERLAP * tolerance {
             return None;
         }
         let is_near = [from, to].iter().all(|&at| {

@@ -15,10 +15,18 @@ use crate::trace::PathStart;
 use glam::{DVec2, DVec3, Vec3};
 
 /// Samples of a joint lie farther apart than this [texels of the finer side].
-const CLOSEST: f64 = 0.1;
+const CLOSEST: f64 = 0.02;
 
 /// And no farther than this.
 const FARTHEST: f64 = 0.2;
+
+/// Where the light changes by more than this share of it from one to the next there are more between them, up to this
+/// number of steps.
+const STEEP: f64 = 0.01;
+const MOST_BETWEEN: f64 = 12.0;
+
+/// A joint that is shorter than this has a single one [texels of the finer side].
+const SHORT: f64 = 0.2;
 
 /// The least cosine between receiving normals across a joint: 5°.
 const SMOOTH: f32 = 0.996_194_7;
@@ -101,7 +109,17 @@ impl<'a> Sampling<'a> {
             let sides = [self.side(a, at)?, self.side(b, b.parameter(point).clamp(0.0, 1.0))?];
             self.sample(number, &sides)
         };
-        places(a, b, joint).into_iter().filter_map(sample).collect()
+        let even: Vec<(f64, Sample)> =
+            places(a, b, joint).into_iter().filter_map(|at| Some((at, sample(at)?))).collect();
+        let between = |pair: &[(f64, Sample)]| {
+            let [(from, first), (to, second)] = [&pair[0], &pair[1]];
+            let (dark, bright) = (first.local.min(second.local), first.local.max(second.local));
+            let count = ((bright - dark) / (STEEP * dark)).clamp(1.0, MOST_BETWEEN) as u32;
+            let (from, width) = (*from, to - from);
+            (1..count).map(move |step| from + width * f64::from(step) / f64::from(count))
+        };
+        let more: Vec<f64> = even.windows(2).flat_map(between).collect();
+        even.into_iter().map(|(_, sample)| sample).chain(more.into_iter().filter_map(sample)).collect()
     }
 
     /// A sample between two sides, if the surface is one there.
@@ -232,7 +250,7 @@ fn places(a: &Border, b: &Border, joint: &Joint) -> Vec<f64> {
     add(a, joint.from, joint.to);
     add(b, b_from, b_to);
     ends.sort_unstable_by(f64::total_cmp);
-    if finer < 2.0 * CLOSEST {
+    if finer < SHORT {
         return vec![0.5 * (joint.from + joint.to)];
     }
     let closest = CLOSEST * share / finer;

@@ -109,7 +109,7 @@ mod tests {
         let short = |key: u64| {
             let from = point(key);
             // Every tenth is as long as the whole.
-            let reach = if key % 10 == 0 { 1.0 } else { 0.05 };
+            let reach = if key.is_multiple_of(10) { 1.0 } else { 0.05 };
             [from, from + reach * (point(key + 10_000) - 0.5)]
         };
         let segments: Vec<[DVec3; 2]> = (0..2000).map(short).collect();
