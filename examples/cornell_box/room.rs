@@ -78,6 +78,7 @@ fn ready(
     names: Query<(Entity, &Name)>,
     mut theirs: Query<FileCamera, Without<Orbit>>,
     own: Single<OwnCamera>,
+    mut suns: Query<&mut DirectionalLight>,
     mut status: ResMut<Status>,
     mut commands: Commands,
 ) {
@@ -88,6 +89,10 @@ fn ready(
         *projection = lens.clone();
         (orbit.yaw, orbit.pitch, _) = view.rotation.to_euler(EulerRot::YXZ);
         orbit.target = view.translation + view.forward() * orbit.distance;
+    }
+    // What stays of a baked sun is its gloss, which would shine through walls.
+    for mut sun in &mut suns {
+        sun.shadow_maps_enabled = true;
     }
     // The lamp has no UV1, and its light drowns what falls on it.
     for (lamp, _) in names.iter().filter(|(_, name)| name.as_str() == "lamp") {

@@ -34,7 +34,7 @@ const STAGE: Stage = Stage {
     distance: 3.5,
     sky: [1200.0, 1500.0, 2000.0],
     background: Color::WHITE,
-    ev100: 8.0,
+    ev100: 9.0,
     size: [1280, 720],
     window: [1280, 720],
 };
