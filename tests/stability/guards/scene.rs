@@ -49,14 +49,9 @@ pub static DIRECTIONS: Guard = Guard {
         },
         Edit { file: "src/trace/surface.rs", text: "normal.is_finite().then", instead: "true.then" },
         Edit {
-            file: "src/bake/texel.rs",
-            text: "smooth.try_normalize().unwrap_or(flat);",
-            instead: "smooth.normalize();",
-        },
-        Edit {
-            file: "src/bake/texel.rs",
-            text: "if normal.dot(flat) > 0.0 { normal } else { flat };",
-            instead: "if true { normal } else { flat };",
+            file: "src/trace/path/start.rs",
+            text: "smooth.try_normalize().filter(|smooth| smooth.dot(shape.normal) > 0.0);",
+            instead: "Some(smooth.normalize());",
         },
     ],
 };
