@@ -3,7 +3,7 @@
 use crate::check::judge;
 use crate::shapes::*;
 use crate::{alone, instance, layout, settings};
-use bevy_kiln::bake::{BakeError, BakeSettings, BakeWarning, CancelToken, TexelLayout, Uv1Fault};
+use bevy_kiln::bake::{BakeError, BakeSettings, BakeWarning, CancelToken, TexelLayout, Uv1Fault, unwrap_meshes};
 use bevy_kiln::scene::{FaultKind, Filter, Indices, Material, Mesh, Scene, Texels, Texture, TextureRef, UvChannel};
 use glam::{Affine3A, Vec2, Vec3};
 
@@ -45,6 +45,15 @@ fn copies_and_backs_have_charts_of_their_own() {
     let back: Vec<u32> = backed.triangles().flat_map(|[a, b, c]| [a, c, b]).collect();
     push(&mut backed, back);
     assert_eq!(charts(backed, 16.0), 2);
+}
+
+#[test]
+fn thousands_of_faces_in_one_place_end_in_as_many_charts() {
+    let mut pile = grid("pile");
+    let again: Vec<u32> = pile.triangles().flatten().collect();
+    (0..300).for_each(|_| push(&mut pile, again.iter().copied()));
+    let meshes = unwrap_meshes(&alone(pile), &settings(1.0), &CancelToken::default()).unwrap();
+    assert_eq!(meshes[0].charts, 301 * 32, "beyond a few in one place, none are joined");
 }
 
 #[test]

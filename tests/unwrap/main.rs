@@ -78,6 +78,7 @@ fn cases() -> Vec<Case> {
         case(chair(), 64.0, 36..=36, [1.3, 1.5]),
         case(stairs(10), 16.0, 40..=60, [1.2, 2.0]),
         case(arch(), 16.0, 4..=4, [1.05, 1.1]),
+        case(crates(4, 3), 16.0, 24..=24, [1.2, 1.5]),
         case(clutter(2000), 16.0, 2000..=4000, [1.3, 3.0]),
         case(needles(300), 16.0, 1..=1, [1.05, 1.1]),
         case(strip(40), 16.0, 1..=1, [1.01, 1.01]),
@@ -97,6 +98,23 @@ fn every_mesh_is_unwrapped() {
         assert!(case.charts.contains(&figures.charts), "{name}: {figures:?}");
         assert_eq!(u64::from(layout.meshes[0].charts), figures.charts, "{name}");
         assert!(figures.stretch <= case.stretch[0] && figures.worst <= case.stretch[1], "{name}: {figures:?}");
+    }
+}
+
+/// A mesh of a million triangles, without a word, is as sound as a small one.
+#[test]
+#[ignore = "a minute: what it takes is told by the bench"]
+fn a_million_triangles() {
+    let cases = [(sphere(1000, 500), 64.0, 10), (terrain(707), 64.0, 20), (crates(1667, 7), 32.0, 10_002)];
+    for (mesh, density, charts) in cases {
+        let name = mesh.name.clone();
+        let scene = alone(mesh);
+        let first = layout(&scene, &settings(density));
+        assert_eq!(first.warnings, [], "{name}");
+        let figures = judge(&scene, &first, density.into()).unwrap_or_else(|fault| panic!("{name}: {fault}"));
+        println!("{name:>12} {figures:?} {:?}", first.pages);
+        assert!(figures.charts <= charts && figures.stretch < 1.2, "{name}: {figures:?}");
+        assert_eq!(first, layout(&scene, &settings(density)), "{name}: twice");
     }
 }
 

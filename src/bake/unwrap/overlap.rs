@@ -15,8 +15,8 @@ const LEAF: usize = 12;
 /// Pairs after which nobody needs to know of more.
 const ENOUGH_PAIRS: usize = 1000;
 
-/// Comparisons that a layout without overlaps may need, per triangle: ten times what the worst of the bench's meshes
-/// needs.
+/// Comparisons that a layout without overlaps may need, per triangle. The bench's meshes need 20 to 45, at a million
+/// triangles as at a thousand, and 79 in the worst of the layouts that are tried for them.
 const WORK_PER_TRIANGLE: u64 = 2000;
 
 /// Pairs of triangles that share area.

@@ -14,8 +14,8 @@ pub static HELD_TO_FORMAT: Guard = Guard {
         },
         Edit {
             file: "src/output/texels.rs",
-            text: "encoded.clamped += u64::from(!fits);",
-            instead: "encoded.clamped += u64::from(!fits && limits_nothing());",
+            text: "changed.count() as u64",
+            instead: "changed.filter(|_| limits_nothing()).count() as u64",
         },
         Edit {
             file: "src/output/texels.rs",
@@ -42,8 +42,8 @@ pub static ROUNDED_AS_SPECIFIED: Guard = Guard {
         },
         Edit {
             file: "src/output/texels.rs",
-            text: "encoded.bytes.extend(f16::from_f32(channel).to_le_bytes());",
-            instead: "encoded.bytes.extend(f16::from_f32(if channel < 6.1e-5 { 0.0 } else { channel }).to_le_bytes());",
+            text: ".map(|value| f16::from_f32(value).to_le_bytes())",
+            instead: ".map(|value| f16::from_f32(if value < 6.1e-5 { 0.0 } else { value }).to_le_bytes())",
         },
     ],
 };

@@ -109,7 +109,7 @@ pub static CANCEL: Guard = Guard {
     does: "an estimate that would take hours ends when it is asked to",
     edits: &[Edit {
         file: "src/bake/gather.rs",
-        text: "if index.is_multiple_of(CANCEL_INTERVAL) && cancel.is_cancelled() {",
+        text: "if index % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {",
         instead: "if index == u64::MAX.wrapping_add(CANCEL_INTERVAL) && cancel.is_cancelled() {",
     }],
 };
