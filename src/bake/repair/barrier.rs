@@ -4,7 +4,8 @@
 //! or bicubic lookup between them mixes both sides, however thin or thick the wall: light leaks into a dark room at the
 //! foot of its walls. A chart cannot be bent around the wall, so one side must give way. Where the sides differ by more
 //! than [`SAME`], the brighter one does, within the reach of the lookups: shade at the outer foot of a wall is
-//! what one expects there, a bright rim in a dark room is not.
+//! what one expects there, a bright rim in a dark room is not. It is held to the brightest of the other side nearby: no
+//! leak is brighter than that.
 //!
 //! Two texels are on different sides if one cannot be reached from the other by links between neighbours within
 //! [`WINDOW`] texels: so the leg of a table, around which one can go, is no wall.
@@ -32,7 +33,7 @@ pub(super) fn stop_light_at_walls(field: &mut Field) {
         if beyond.is_empty() {
             continue;
         }
-        let level = level(field, here, &walk);
+        let level = level(field, &walk);
         for there in beyond {
             let brightness = luminance(field.value[there].as_dvec3());
             let cap = brightness.min(held_to(level, brightness));
@@ -56,7 +57,7 @@ pub(super) fn stop_light_in_walls(field: &mut Field, owners: &Owners) {
             continue;
         }
         walk.reach(field, here, WINDOW);
-        let level = level(field, here, &walk);
+        let level = level(field, &walk);
         for there in hidden {
             let is_of_this_side = owners.source(there).is_none_or(|source| walk.has_reached(source));
             let brightness = luminance(field.value[there].as_dvec3());
@@ -121,15 +122,11 @@ fn beyond(field: &Field, here: usize, walk: &mut Walk) -> Vec<usize> {
     beyond
 }
 
-/// How bright this side is about a texel: the mean of what can be reached nearby, and its error.
-fn level(field: &Field, here: usize, walk: &Walk) -> f64 {
-    let (mut sum, mut variance, mut count) = (0.0, 0.0, 0.0);
-    for index in within(field, here, REACH).filter(|&index| walk.has_reached(index)) {
-        sum += luminance(field.value[index].as_dvec3());
-        variance += luminance((field.stderr[index] * field.stderr[index]).as_dvec3());
-        count += 1.0;
-    }
-    (sum + 2.0 * f64::sqrt(variance)) / f64::max(count, 1.0)
+/// How bright this side is: the brightest that can be reached within the window, and its error. Not how bright it is at
+/// the wall's foot, or a shelf's board between two dark corners of lit compartments would cast shade on both sides.
+fn level(field: &Field, walk: &Walk) -> f64 {
+    let brightest = |&index: &usize| luminance((field.value[index] + 2.0 * field.stderr[index]).as_dvec3());
+    walk.reached.iter().map(brightest).fold(0.0, f64::max)
 }
 
 /// The texels that can be reached from one of them.
