@@ -32,7 +32,7 @@ const OFF_CENTRE: f64 = 0.25;
 
 /// What the least local value falls to from a lookup to the farthest that share texels with it, and how often that is
 /// carried on.
-const FALL_OFF: f64 = 0.4;
+const FALL_OFF: f64 = 0.5;
 const SPREAD: u32 = 12;
 
 /// A texel: page and number.
