@@ -2,14 +2,48 @@
 
 use crate::charted::{Patch, capsule, cylinder, mesh, pipe, sphere, torus};
 use crate::common::scenes::grey;
-use crate::judge::{Edges, Look, TARGET, bake, in_shared_exponents, pairs, settings, unrepaired, worst_jump};
+use crate::judge::{
+    Edges, Look, TARGET, bake, displayed, in_shared_exponents, pairs, settings, unrepaired, worst_jump,
+};
 use bevy_kiln::artefact::StableId;
 use bevy_kiln::bake::{Filtering, Lightmap, SeamReport};
 use bevy_kiln::scene::{Indices, Instance, Light, LightmapRequest, Mesh, PointLight, Scene};
-use glam::{Affine3A, Quat, Vec2, Vec3};
+use glam::{Affine3A, EulerRot, Quat, Vec2, Vec3};
+
+/// How a shape stands under its lamp.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    pub size: f32,
+    pub turn: Quat,
+    pub lamp: Vec3,
+    pub lamp_radius: f32,
+    pub density: f32,
+    /// Changes the paths.
+    pub seed: u64,
+}
+
+impl Default for Setting {
+    fn default() -> Self {
+        Self {
+            size: 1.0,
+            turn: Quat::from_rotation_z(0.3),
+            lamp: Vec3::new(1.2, 2.0, 0.9),
+            lamp_radius: 0.1,
+            density: 48.0,
+            seed: 0,
+        }
+    }
+}
+
+/// Who lays out the charts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Charting {
+    ByHand,
+    Unwrapped,
+}
 
 /// A shape over a grey floor, which is not baked, under one lamp.
-pub fn scene(name: &str, patches: &[Patch]) -> Scene {
+pub fn scene(name: &str, patches: &[Patch], charting: Charting, setting: &Setting) -> Scene {
     let floor = Mesh {
         name: "floor".into(),
         indices: Indices::U16(vec![0, 2, 1, 0, 3, 2]),
@@ -24,41 +58,53 @@ pub fn scene(name: &str, patches: &[Patch]) -> Scene {
         world_from_local: Affine3A::IDENTITY,
         lightmap: None,
     };
-    let turned = Affine3A::from_rotation_translation(Quat::from_rotation_z(0.3), Vec3::new(0.1, 0.2, -0.1));
-    let shape = Instance { world_from_local: turned, lightmap: Some(LightmapRequest::default()), ..instance(1, name) };
+    let place = Vec3::new(0.1, 0.2, -0.1);
+    let turned = Affine3A::from_scale_rotation_translation(Vec3::splat(setting.size), setting.turn, place);
+    let shape = Instance {
+        world_from_local: turned,
+        lightmap: Some(LightmapRequest::default()),
+        ..instance(1, &format!("{name} {}", setting.seed))
+    };
     let lamp = PointLight {
         id: StableId::new("lamp"),
         name: "lamp".into(),
-        position: Vec3::new(1.2, 2.0, 0.9),
+        position: setting.lamp,
         intensity: Vec3::new(100.0, 90.0, 60.0),
-        radius: 0.1,
+        radius: setting.lamp_radius,
         range: None,
     };
-    let scene = Scene {
-        meshes: vec![floor, mesh(name, patches)],
+    let mut mesh = mesh(name, patches);
+    if charting == Charting::Unwrapped {
+        mesh.uv1 = None;
+    }
+    Scene {
+        meshes: vec![floor, mesh],
         materials: vec![grey(0.6)],
         instances: vec![instance(0, "floor"), shape],
         lights: vec![Light::Point(lamp)],
         ..Scene::default()
-    };
-    assert_eq!(scene.validate(), []);
-    scene
+    }
 }
 
 fn report(lightmap: &Lightmap) -> SeamReport {
     lightmap.report.seams.expect("there are seams")
 }
 
-fn check(name: &str, patches: &[Patch]) -> Result<(), String> {
-    let scene = scene(name, patches);
-    let lightmap = bake(&scene, &settings(48.0, 64));
+/// All of them, by name.
+const SHAPES: [(&str, fn() -> Vec<Patch>); 5] =
+    [("sphere", sphere), ("capsule", capsule), ("cylinder", cylinder), ("torus", torus), ("pipe", pipe)];
+
+fn check(name: &str, patches: &[Patch], charting: Charting, setting: &Setting) -> Result<(), String> {
+    let scene = scene(name, patches, charting, setting);
+    let lightmap = bake(&scene, &settings(setting.density, 64));
+    let scene = displayed(&scene, &lightmap);
     let pairs = pairs(&scene, Edges::Smooth);
     let bare = worst_jump(&scene, &unrepaired(&lightmap), &pairs);
     let jump = worst_jump(&scene, &lightmap, &pairs);
     let kept = worst_jump(&scene, &in_shared_exponents(&lightmap), &pairs);
     let SeamReport { joints, samples, before, after } = report(&lightmap);
     println!(
-        "{name}: {joints} joints, {samples} samples; jump {:.2} % as measured, {:.2} % (p99 {:.2} %) before, {:.2} % \
+        "{name}, {charting:?}: {joints} joints, {samples} samples; jump {:.2} % as measured, {:.2} % (p99 {:.2} %) before, {:.2} % \
          after by the report; {:.2} % as displayed, {:.2} % in shared exponents; noise {:.1} %",
         100.0 * bare,
         100.0 * before.max,
@@ -68,42 +114,54 @@ fn check(name: &str, patches: &[Patch]) -> Result<(), String> {
         100.0 * kept,
         100.0 * lightmap.report.relative_stderr.mean,
     );
-    if bare < 2.0 * TARGET {
+    // A cylinder's side unrolls into one chart, whose two ends are alike.
+    if bare < 2.0 * TARGET && charting == Charting::ByHand {
         return Err(format!("{name}: there is nothing to mend: {bare}"));
     }
     if jump.max(kept) > TARGET { Err(format!("{name}: {jump} {kept}")) } else { Ok(()) }
 }
 
+fn by_hand(name: &str, patches: &[Patch]) {
+    check(name, patches, Charting::ByHand, &Setting::default()).unwrap();
+}
+
+/// The same shapes, whose charts nobody has laid out.
+#[test]
+fn no_jump_on_unwrapped_shapes() {
+    for (name, shape) in SHAPES {
+        check(name, &shape(), Charting::Unwrapped, &Setting { density: 24.0, ..Setting::default() }).unwrap();
+    }
+}
+
 #[test]
 fn no_jump_on_a_sphere() {
-    check("sphere", &sphere()).unwrap();
+    by_hand("sphere", &sphere());
 }
 
 #[test]
 fn no_jump_on_a_capsule() {
-    check("capsule", &capsule()).unwrap();
+    by_hand("capsule", &capsule());
 }
 
 #[test]
 fn no_jump_on_a_cylinder() {
-    check("cylinder", &cylinder()).unwrap();
+    by_hand("cylinder", &cylinder());
 }
 
 #[test]
-#[ignore = "misses its target: 1.04 % of the local value where the lamp's terminator crosses a slanted seam"]
 fn no_jump_on_a_torus() {
-    check("torus", &torus()).unwrap();
+    by_hand("torus", &torus());
 }
 
 #[test]
 fn no_jump_on_a_bent_pipe() {
-    check("pipe", &pipe()).unwrap();
+    by_hand("pipe", &pipe());
 }
 
 /// The edge between a cylinder's side and its cap is as hard as before: both sides are what was measured.
 #[test]
 fn a_hard_edge_stays_hard() {
-    let scene = scene("cylinder", &cylinder());
+    let scene = scene("cylinder", &cylinder(), Charting::ByHand, &Setting::default());
     let lightmap = bake(&scene, &settings(48.0, 64));
     let pairs = pairs(&scene, Edges::Hard);
     let bare = unrepaired(&lightmap);
@@ -123,7 +181,7 @@ fn a_hard_edge_stays_hard() {
 /// Faults that the judge of jumps must find.
 #[test]
 fn the_judge_sees_a_missing_solve_and_lookups_half_a_texel_off() {
-    let scene = scene("sphere", &sphere());
+    let scene = scene("sphere", &sphere(), Charting::ByHand, &Setting::default());
     let lightmap = bake(&scene, &settings(48.0, 64));
     let pairs = pairs(&scene, Edges::Smooth);
     assert!(worst_jump(&scene, &unrepaired(&lightmap), &pairs) > TARGET);
@@ -131,4 +189,36 @@ fn the_judge_sees_a_missing_solve_and_lookups_half_a_texel_off() {
         let look = Look { shift: Vec2::splat(0.5), ..Look::new(&scene, &lightmap, filtering) };
         assert!(look.worst_jump(&pairs) > TARGET, "{filtering:?}");
     }
+}
+
+/// The shapes in other places, sizes and lights, charted both ways.
+#[test]
+#[ignore = "slow: 110 bakes, a table to read"]
+fn variations() {
+    let base = Setting::default();
+    let turn = |x: f32, y: f32, z: f32| Quat::from_euler(EulerRot::XYZ, x, y, z);
+    let variations = [
+        ("as tested", base),
+        ("16 texels/m", Setting { density: 16.0, ..base }),
+        ("24 texels/m", Setting { density: 24.0, ..base }),
+        ("64 texels/m", Setting { density: 64.0, ..base }),
+        ("other paths", Setting { seed: 77, ..base }),
+        ("turned", Setting { turn: turn(1.1, 0.4, 2.0), ..base }),
+        ("lamp aside", Setting { lamp: Vec3::new(-1.4, 0.8, 1.1), ..base }),
+        ("small lamp", Setting { lamp_radius: 0.01, lamp: Vec3::new(0.4, 1.9, -1.4), ..base }),
+        ("large lamp", Setting { lamp_radius: 0.4, ..base }),
+        ("half the size", Setting { size: 0.5, density: 64.0, ..base }),
+        ("turned, other paths", Setting { turn: turn(-0.7, 2.4, 0.6), seed: 3, density: 32.0, ..base }),
+    ];
+    let mut failures = Vec::new();
+    for (label, setting) in variations {
+        println!("{label}:");
+        for (name, shape) in SHAPES {
+            for charting in [Charting::ByHand, Charting::Unwrapped] {
+                failures
+                    .extend(check(name, &shape(), charting, &setting).err().map(|fault| format!("{label}: {fault}")));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
 }

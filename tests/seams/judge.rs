@@ -2,7 +2,7 @@
 //! edge with every other.
 
 use bevy_kiln::bake::{BakeSettings, CancelToken, Filtering, Lightmap, bake_lightmap};
-use bevy_kiln::scene::Scene;
+use bevy_kiln::scene::{Indices, Mesh, Scene};
 use glam::{Vec2, Vec3};
 use std::num::NonZeroUsize;
 
@@ -58,6 +58,27 @@ fn edges(scene: &Scene) -> Vec<Edge> {
         }
     }
     edges
+}
+
+/// The scene with the meshes that a game shows: those that were given a UV1 take it.
+pub fn displayed(scene: &Scene, lightmap: &Lightmap) -> Scene {
+    let mut scene = scene.clone();
+    for placement in &lightmap.placements {
+        let Some(laid_out) = placement.mesh.map(|mesh| &lightmap.meshes[mesh]) else { continue };
+        let source = &scene.meshes[laid_out.source];
+        let taken = |from: &Vec<Vec3>| laid_out.vertices.iter().map(|&vertex| from[vertex as usize]).collect();
+        let mesh = Mesh {
+            positions: taken(&source.positions),
+            normals: source.normals.as_ref().map(taken),
+            uv1: Some(laid_out.uv1.clone()),
+            indices: Indices::U32(laid_out.indices.clone()),
+            ..Mesh::default()
+        };
+        let number = scene.meshes.len();
+        scene.meshes.push(mesh);
+        scene.instances.iter_mut().filter(|instance| instance.id == placement.id).for_each(|i| i.mesh = number);
+    }
+    scene
 }
 
 /// Points on pairs of edges that lie on each other, in part or whole, and are shown by different texels.

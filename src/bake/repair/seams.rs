@@ -30,6 +30,11 @@ const FILLED_ERROR: f64 = 0.25;
 /// read is its centre.
 const OFF_CENTRE: f64 = 0.25;
 
+/// What the least local value falls to from a lookup to the farthest that share texels with it, and how often that is
+/// carried on.
+const FALL_OFF: f64 = 0.5;
+const SPREAD: u32 = 12;
+
 /// A texel: page and number.
 type Place = (u32, u32);
 
@@ -40,11 +45,12 @@ pub(super) fn mend(
     place: &Surroundings<'_>,
     workers: &Workers<'_>,
 ) -> Result<Option<SeamReport>, BakeError> {
-    let samples = samples(fields, owners, place, workers)?;
+    let mut samples = samples(fields, owners, place, workers)?;
     if samples.is_empty() {
         return Ok(None);
     }
     let system = System::new(&samples);
+    system.spread(&mut samples);
     let groups = system.groups(&samples);
     let solutions = workers.gather_quietly(&groups, |group, cancel| {
         let (rows, unknowns) = system.group(group, &samples, fields, owners);
@@ -128,6 +134,21 @@ impl System {
         &self.numbers[self.begins[sample]..end]
     }
 
+    /// Spreads the least local values along the seams, from lookup to lookup that share texels, falling off.
+    fn spread(&self, samples: &mut [Sample]) {
+        let mut at = vec![0.0_f64; self.places.len()];
+        for _ in 0..SPREAD {
+            for (number, sample) in samples.iter().enumerate() {
+                let floor = FALL_OFF * sample.floor;
+                self.of(number).iter().for_each(|&unknown| at[unknown as usize] = at[unknown as usize].max(floor));
+            }
+            for (number, sample) in samples.iter_mut().enumerate() {
+                sample.floor =
+                    self.of(number).iter().fold(sample.floor, |most, &unknown| most.max(at[unknown as usize]));
+            }
+        }
+    }
+
     /// Groups by their first unknown, with samples and unknowns in order.
     fn groups(&self, samples: &[Sample]) -> Vec<Group> {
         let mut sets = DisjointSets::new(self.places.len() as u32);
@@ -168,10 +189,10 @@ impl System {
                 let entries = || of_row.iter().copied().zip(row.entries.iter().map(|entry| entry.weight));
                 for (number, weight) in entries() {
                     let (sum, weights) = &mut locals[number as usize];
-                    *sum += weight * weight * sample.local;
+                    *sum += weight * weight * row.local();
                     *weights += weight * weight;
                 }
-                rows.push(row.difference, sample.local, entries());
+                rows.push([row.difference, row.mean], sample.floor, entries());
             }
         }
         let unknown = |(&number, (sum, weights)): (&u32, (f64, f64))| {

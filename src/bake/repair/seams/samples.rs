@@ -57,6 +57,10 @@ pub(super) struct Entry {
 pub(super) struct Row {
     /// Before anything moves [cd/m²].
     pub(super) difference: DVec3,
+    /// The mean of both [cd/m²].
+    pub(super) mean: DVec3,
+    /// What the local value is at least [cd/m²].
+    pub(super) floor: f64,
     /// The texels that may move.
     pub(super) entries: Vec<Entry>,
 }
@@ -66,10 +70,24 @@ pub(super) struct Row {
 pub(super) struct Sample {
     /// Which joint.
     pub(super) joint: u32,
-    /// The local value [cd/m²].
-    pub(super) local: f64,
+    /// What the local value of both lookups is at least [cd/m²].
+    pub(super) floor: f64,
     /// For each kind of filtering.
     pub(super) rows: [Row; 2],
+}
+
+impl Row {
+    /// The local value before anything moves [cd/m²].
+    pub(super) fn local(&self) -> f64 {
+        self.mean.max_element().max(self.floor)
+    }
+}
+
+impl Sample {
+    /// The larger of both local values before anything moves [cd/m²].
+    pub(super) fn local(&self) -> f64 {
+        self.rows.iter().map(Row::local).fold(0.0, f64::max)
+    }
 }
 
 /// What samples are made from.
@@ -113,7 +131,7 @@ impl<'a> Sampling<'a> {
             places(a, b, joint).into_iter().filter_map(|at| Some((at, sample(at)?))).collect();
         let between = |pair: &[(f64, Sample)]| {
             let [(from, first), (to, second)] = [&pair[0], &pair[1]];
-            let (dark, bright) = (first.local.min(second.local), first.local.max(second.local));
+            let (dark, bright) = (first.local().min(second.local()), first.local().max(second.local()));
             let count = ((bright - dark) / (STEEP * dark)).clamp(1.0, MOST_BETWEEN) as u32;
             let (from, width) = (*from, to - from);
             (1..count).map(move |step| from + width * f64::from(step) / f64::from(count))
@@ -138,27 +156,29 @@ impl<'a> Sampling<'a> {
             return None;
         }
         let moving = [self.moving(a)?, self.moving(b)?];
-        let (mut local, mut brightest) = (0.0_f64, 0.0_f64);
-        let rows = Filtering::ALL.map(|filtering| {
-            let mut row = Row { difference: DVec3::ZERO, entries: Vec::new() };
-            for ((side, moving), sign) in sides.iter().zip(&moving).zip([1.0, -1.0]) {
-                let field = &self.fields[side.page as usize];
-                let mut read = DVec3::ZERO;
-                for (texel, weight) in filtering.taps(field.size, side.place).iter() {
-                    let value = field.value[texel].as_dvec3();
-                    brightest = brightest.max(value.max_element());
-                    read += weight * value;
-                    if moving.contains(&texel) && weight != 0.0 {
-                        row.entries.push(Entry { texel: (side.page, texel as u32), weight: sign * weight });
-                    }
+        let mut rows = Filtering::ALL.map(|filtering| self.row(filtering, sides, &moving));
+        // What the one lookup reads may move what the other does.
+        let floor = rows.iter().map(|row| row.floor).fold(0.0, f64::max);
+        rows.iter_mut().for_each(|row| row.floor = floor);
+        (floor > 0.0 && floor.is_finite()).then_some(Sample { joint, rows, floor })
+    }
+
+    /// How the two sides differ by one kind of filtering.
+    fn row(&self, filtering: Filtering, sides: &[Side<'_>; 2], moving: &[Vec<usize>; 2]) -> Row {
+        let mut row = Row { difference: DVec3::ZERO, mean: DVec3::ZERO, floor: 0.0, entries: Vec::new() };
+        for ((side, moving), sign) in sides.iter().zip(moving).zip([1.0, -1.0]) {
+            let field = &self.fields[side.page as usize];
+            for (texel, weight) in filtering.taps(field.size, side.place).iter() {
+                let value = field.value[texel].as_dvec3();
+                row.floor = row.floor.max(LEAST_LOCAL * value.max_element());
+                row.difference += sign * weight * value;
+                row.mean += 0.5 * weight * value;
+                if moving.contains(&texel) && weight != 0.0 {
+                    row.entries.push(Entry { texel: (side.page, texel as u32), weight: sign * weight });
                 }
-                local = local.max(read.max_element());
-                row.difference += sign * read;
             }
-            row
-        });
-        let local = local.max(LEAST_LOCAL * brightest);
-        (local > 0.0 && local.is_finite()).then_some(Sample { joint, local, rows })
+        }
+        row
     }
 
     /// One side of a joint, at a place in parts of its edge.

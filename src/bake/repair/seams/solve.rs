@@ -25,6 +25,9 @@ const NOTED: f64 = 3e-3;
 /// The most rounds.
 const ROUNDS: usize = 30;
 
+/// The local value goes by what is displayed now; from round to round it changes by no more than this factor.
+const FASTEST: f64 = 2.0;
+
 /// How often a round is solved again with what fell below zero held there.
 const HOLDS: usize = 3;
 
@@ -51,8 +54,10 @@ pub(super) struct Unknown {
 pub(super) struct Rows {
     /// Before [cd/m²].
     pub(super) difference: Vec<DVec3>,
-    /// The local value [cd/m²].
-    pub(super) local: Vec<f64>,
+    /// The mean of both lookups before [cd/m²].
+    pub(super) mean: Vec<DVec3>,
+    /// What the local value is at least [cd/m²].
+    pub(super) floor: Vec<f64>,
     /// Where each row's entries end.
     pub(super) ends: Vec<u32>,
     /// Unknowns and weights.
@@ -69,11 +74,17 @@ pub(super) struct Solution {
 }
 
 impl Rows {
-    pub(super) fn push(&mut self, difference: DVec3, local: f64, entries: impl Iterator<Item = (u32, f64)>) {
+    pub(super) fn push(
+        &mut self,
+        [difference, mean]: [DVec3; 2],
+        floor: f64,
+        entries: impl Iterator<Item = (u32, f64)>,
+    ) {
         self.entries.extend(entries.map(|(unknown, weight)| (unknown, weight as f32)));
         self.ends.push(self.entries.len() as u32);
         self.difference.push(difference);
-        self.local.push(local);
+        self.mean.push(mean);
+        self.floor.push(floor);
     }
 
     fn iter(&self) -> impl Iterator<Item = (usize, &[(u32, f32)])> + '_ {
@@ -86,10 +97,22 @@ impl Rows {
         self.iter().map(|(row, entries)| self.difference[row] + read(entries, moves)).collect()
     }
 
-    /// Differences over the local values.
-    fn relative(&self, left: &[DVec3]) -> Vec<f64> {
-        left.iter().zip(&self.local).map(|(left, local)| left.abs().max_element() / local).collect()
+    /// The local values where the unknowns have moved: the strongest channel of the mean of both lookups.
+    fn local(&self, moves: &[DVec3]) -> Vec<f64> {
+        let local = |(row, entries): (usize, &[(u32, f32)])| {
+            // The sign of a weight tells the side, and lookups have no negative ones.
+            let moved: DVec3 =
+                entries.iter().map(|&(unknown, weight)| moves[unknown as usize] * f64::from(weight.abs())).sum();
+            (self.mean[row] + 0.5 * moved).max_element().max(self.floor[row])
+        };
+        self.iter().map(local).collect()
     }
+}
+
+/// Differences over the local values.
+fn relative(left: &[DVec3], local: &[f64]) -> Vec<f64> {
+    let relative = |(left, &local): (&DVec3, &f64)| if local > 0.0 { left.abs().max_element() / local } else { 0.0 };
+    left.iter().zip(local).map(relative).collect()
 }
 
 fn read(entries: &[(u32, f32)], of: &[DVec3]) -> DVec3 {
@@ -105,18 +128,22 @@ pub(super) fn stiffness(relative_error: f64, local: f64) -> f64 {
 /// Solves one group of seams; `None` if cancelled.
 pub(super) fn solve(rows: &Rows, unknowns: &[Unknown], cancel: &CancelToken) -> Option<Solution> {
     let mut moves = vec![DVec3::ZERO; unknowns.len()];
-    let before = rows.relative(&rows.difference);
+    let mut local = rows.local(&moves);
+    let before = relative(&rows.difference, &local);
     let mut best = (moves.clone(), before.clone());
     if worst(&before) < NO_JUMP {
         return Some(Solution { moves, after: before.clone(), before });
     }
-    let mut extra = vec![1.0; rows.local.len()];
+    let mut extra = vec![1.0; local.len()];
     let mut last = before.clone();
-    let mut weights: Vec<f64> = rows.local.iter().map(|local| 1.0 / (local * local)).collect();
+    let weight = |extra: f64, local: f64| if local > 0.0 { extra / (local * local) } else { 0.0 };
+    let mut weights: Vec<f64> = local.iter().map(|&local| weight(1.0, local)).collect();
     let mut free = vec![DVec3::ONE; unknowns.len()];
     let mut goals = rows.difference.clone();
     for _ in 0..ROUNDS {
-        free.fill(DVec3::ONE);
+        let everything = vec![DVec3::ONE; unknowns.len()];
+        let pull = Problem { rows, unknowns, goals: &goals, weights: &weights, free: &everything }.downhill(&moves);
+        release(&pull, &mut free);
         for _ in 0..HOLDS {
             let problem = Problem { rows, unknowns, goals: &goals, weights: &weights, free: &free };
             problem.descend(&mut moves, cancel)?;
@@ -125,19 +152,28 @@ pub(super) fn solve(rows: &Rows, unknowns: &[Unknown], cancel: &CancelToken) -> 
             }
         }
         let left = rows.left(&moves);
-        let after = rows.relative(&left);
+        let now = rows.local(&moves);
+        let after = relative(&left, &now);
+        // No faster, or weights and values chase each other.
+        local.iter_mut().zip(now).for_each(|(local, now)| *local = now.clamp(*local / FASTEST, *local * FASTEST));
         if worst(&after) < worst(&best.1) {
             best = (moves.clone(), after.clone());
         }
         if worst(&after) <= TARGET {
             break;
         }
-        for row in (0..goals.len()).filter(|&row| after[row] > NOTED) {
-            goals[row] += left[row];
-            if after[row] > TARGET.max(STUBBORN * last[row]) && extra[row] < MOST_EXTRA {
-                extra[row] *= EXTRA;
-                weights[row] *= EXTRA;
-                goals[row] = rows.difference[row] + (goals[row] - rows.difference[row]) / EXTRA;
+        for row in 0..goals.len() {
+            if after[row] > NOTED {
+                goals[row] += left[row];
+                if after[row] > TARGET.max(STUBBORN * last[row]) && extra[row] < MOST_EXTRA {
+                    extra[row] *= EXTRA;
+                }
+            }
+            // The pull of what was added stays what it was.
+            let new = weight(extra[row], local[row]);
+            if new != weights[row] && new > 0.0 {
+                goals[row] = rows.difference[row] + (goals[row] - rows.difference[row]) * (weights[row] / new);
+                weights[row] = new;
             }
         }
         last.clone_from(&after);
@@ -160,6 +196,13 @@ fn hold(unknowns: &[Unknown], moves: &mut [DVec3], free: &mut [DVec3]) -> bool {
         is_any |= below.any();
     }
     is_any
+}
+
+/// Lets go of what is held at zero where the pull is upwards again.
+fn release(pull: &[DVec3], free: &mut [DVec3]) {
+    free.iter_mut()
+        .zip(pull)
+        .for_each(|(free, pull)| *free = DVec3::select(pull.cmpgt(DVec3::ZERO), DVec3::ONE, *free));
 }
 
 /// One round.
@@ -271,7 +314,7 @@ mod tests {
     fn two(values: [f64; 2], errors: [f64; 2]) -> Solution {
         let mut rows = Rows::default();
         let difference = DVec3::splat(values[0] - values[1]);
-        rows.push(difference, 1.0, [(0, 1.0), (1, -1.0)].into_iter());
+        rows.push([difference, DVec3::ONE], 0.0, [(0, 1.0), (1, -1.0)].into_iter());
         let unknowns = [unknown(values[0], errors[0]), unknown(values[1], errors[1])];
         solve(&rows, &unknowns, &CancelToken::default()).unwrap()
     }
@@ -295,7 +338,7 @@ mod tests {
     fn nothing_falls_below_zero() {
         // 2 a − b = 0 cannot hold with b − a = 3 unless both move; a would have to be negative.
         let mut rows = Rows::default();
-        rows.push(DVec3::splat(4.0), 1.0, [(0, 2.0), (1, 1.0)].into_iter());
+        rows.push([DVec3::splat(4.0), DVec3::ONE], 1.0, [(0, 2.0), (1, 1.0)].into_iter());
         let unknowns = [unknown(0.5, 0.5), unknown(3.0, 0.001)];
         let solution = solve(&rows, &unknowns, &CancelToken::default()).unwrap();
         for (unknown, step) in unknowns.iter().zip(&solution.moves) {
