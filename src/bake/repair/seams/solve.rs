@@ -5,8 +5,9 @@
 //! relative standard error and τ the jump that is borne (Iwanicki 2013, "Lighting Technology of The Last of Us", has
 //! seams of lightmaps as least squares; the weights are ours). Where that leaves more than what nobody sees, what is
 //! left is added to what the lookup should make up for, and all is solved again from there (the method of multipliers,
-//! Hestenes 1969, Powell 1969): the equations stay as well conditioned as they are. No texel falls below zero: one
-//! that would is held at zero in the next solution. The solver is that of conjugate gradients (Hestenes and Stiefel 1952)
+//! Hestenes 1969, Powell 1969): the equations stay as well conditioned as they are. No texel leaves the
+//! range of those that it is to agree with by more than half of that range, nor falls below zero: one that would is held
+//! on its bound in the next solution. The solver is that of conjugate gradients (Hestenes and Stiefel 1952)
 //! with the diagonal as its preconditioner. All sums run in a fixed order.
 
 use crate::bake::CancelToken;
@@ -28,7 +29,10 @@ const ROUNDS: usize = 30;
 /// The local value goes by what is displayed now; from round to round it changes by no more than this factor.
 const FASTEST: f64 = 2.0;
 
-/// How often a round is solved again with what fell below zero held there.
+/// How far a texel may go beyond the range of those that it is to agree with, in that range.
+const BEYOND: f64 = 0.5;
+
+/// How often a round is solved again with what went beyond its bounds held there.
 const HOLDS: usize = 3;
 
 /// A row whose jump falls by less than this from round to round counts more in the next, and how much at the most.
@@ -139,15 +143,16 @@ pub(super) fn solve(rows: &Rows, unknowns: &[Unknown], cancel: &CancelToken) -> 
     let weight = |extra: f64, local: f64| if local > 0.0 { extra / (local * local) } else { 0.0 };
     let mut weights: Vec<f64> = local.iter().map(|&local| weight(1.0, local)).collect();
     let mut free = vec![DVec3::ONE; unknowns.len()];
+    let bounds = Bounds::new(rows, unknowns);
     let mut goals = rows.difference.clone();
     for _ in 0..ROUNDS {
         let everything = vec![DVec3::ONE; unknowns.len()];
         let pull = Problem { rows, unknowns, goals: &goals, weights: &weights, free: &everything }.downhill(&moves);
-        release(&pull, &mut free);
+        bounds.release(&moves, &pull, &mut free);
         for _ in 0..HOLDS {
             let problem = Problem { rows, unknowns, goals: &goals, weights: &weights, free: &free };
             problem.descend(&mut moves, cancel)?;
-            if !hold(unknowns, &mut moves, &mut free) {
+            if !bounds.hold(&mut moves, &mut free) {
                 break;
             }
         }
@@ -186,23 +191,52 @@ fn worst(jumps: &[f64]) -> f64 {
     jumps.iter().copied().fold(0.0, f64::max)
 }
 
-/// Puts at zero what has fallen below, to stay there; tells whether there was any.
-fn hold(unknowns: &[Unknown], moves: &mut [DVec3], free: &mut [DVec3]) -> bool {
-    let mut is_any = false;
-    for ((step, unknown), free) in moves.iter_mut().zip(unknowns).zip(free) {
-        let below = (unknown.value + *step).cmplt(DVec3::ZERO);
-        *step = DVec3::select(below, -unknown.value, *step);
-        *free = DVec3::select(below, DVec3::ZERO, *free);
-        is_any |= below.any();
-    }
-    is_any
+/// How far each unknown may move, down and up: not out of the range of all that it is to agree with by more than
+/// [`BEYOND`] of that range, and not below zero. What cannot be made to agree stays apart; it is not driven anywhere.
+struct Bounds {
+    low: Vec<DVec3>,
+    high: Vec<DVec3>,
 }
 
-/// Lets go of what is held at zero where the pull is upwards again.
-fn release(pull: &[DVec3], free: &mut [DVec3]) {
-    free.iter_mut()
-        .zip(pull)
-        .for_each(|(free, pull)| *free = DVec3::select(pull.cmpgt(DVec3::ZERO), DVec3::ONE, *free));
+impl Bounds {
+    fn new(rows: &Rows, unknowns: &[Unknown]) -> Self {
+        let values = || unknowns.iter().map(|unknown| unknown.value);
+        let (mut least, mut most): (Vec<DVec3>, Vec<DVec3>) = (values().collect(), values().collect());
+        for (_, entries) in rows.iter() {
+            let of = |&(unknown, _): &(u32, f32)| unknowns[unknown as usize].value;
+            let low = entries.iter().map(of).fold(DVec3::INFINITY, DVec3::min);
+            let high = entries.iter().map(of).fold(DVec3::ZERO, DVec3::max);
+            for &(unknown, _) in entries {
+                least[unknown as usize] = least[unknown as usize].min(low);
+                most[unknown as usize] = most[unknown as usize].max(high);
+            }
+        }
+        let slack = |index: usize| BEYOND * (most[index] - least[index]);
+        let low = |index: usize| (least[index] - slack(index)).max(DVec3::ZERO) - unknowns[index].value;
+        let high = |index: usize| most[index] + slack(index) - unknowns[index].value;
+        Self { low: (0..unknowns.len()).map(low).collect(), high: (0..unknowns.len()).map(high).collect() }
+    }
+
+    /// Puts on its bound what has gone beyond, to stay there; tells whether there was any.
+    fn hold(&self, moves: &mut [DVec3], free: &mut [DVec3]) -> bool {
+        let mut is_any = false;
+        for (index, (step, free)) in moves.iter_mut().zip(free).enumerate() {
+            let beyond = step.cmplt(self.low[index]) | step.cmpgt(self.high[index]);
+            *step = step.clamp(self.low[index], self.high[index]);
+            *free = DVec3::select(beyond, DVec3::ZERO, *free);
+            is_any |= beyond.any();
+        }
+        is_any
+    }
+
+    /// Lets go of what is held on a bound where the pull is away from it again.
+    fn release(&self, moves: &[DVec3], pull: &[DVec3], free: &mut [DVec3]) {
+        for (index, free) in free.iter_mut().enumerate() {
+            let inwards = (moves[index].cmple(self.low[index]) & pull[index].cmpgt(DVec3::ZERO))
+                | (moves[index].cmpge(self.high[index]) & pull[index].cmplt(DVec3::ZERO));
+            *free = DVec3::select(inwards, DVec3::ONE, *free);
+        }
+    }
 }
 
 /// One round.
