@@ -36,12 +36,12 @@ pub use valid::Uv1Fault;
 
 use super::workers::Workers;
 use super::{BakeError, BakeSettings, BakeWarning, Layout};
+#[cfg(test)]
+use crate as bevy_kiln;
 use crate::artefact::StableId;
 use crate::scene::{Fault, FaultKind, Instance, Mesh, Scene, Subject, UvChannel};
 use group::{Group, Unwrapped};
 use shape::{Shape, ShapeKey};
-#[cfg(test)]
-use crate as bevy_kiln;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use valid::uv1_fault;
