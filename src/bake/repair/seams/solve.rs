@@ -24,7 +24,7 @@ const TARGET: f64 = 4e-3;
 const NOTED: f64 = 3e-3;
 
 /// The most rounds.
-const ROUNDS: usize = 30;
+const ROUNDS: usize = 60;
 
 /// The local value goes by what is displayed now; from round to round it changes by no more than this factor.
 const FASTEST: f64 = 2.0;
