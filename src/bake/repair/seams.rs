@@ -17,7 +17,7 @@ use crate::bake::workers::Workers;
 use crate::bake::{BakeError, Jump, SeamReport};
 use glam::DVec3;
 use samples::{Sample, Sampling};
-use solve::{Rows, Solution, Unknown, solve, stiffness};
+use solve::{Rows, SLACK_FILLED, SLACK_MEASURED, Solution, Unknown, solve, stiffness};
 
 /// Bounds of the relative standard error that a measured texel may claim.
 const LEAST_ERROR: f64 = 0.01;
@@ -208,7 +208,8 @@ impl System {
                 Some(source) => measured(source).clamp(FILLED_ERROR, MOST_ERROR),
                 None => FILLED_ERROR,
             };
-            Unknown { value: field.value[texel].as_dvec3(), stiffness: stiffness(error, local) }
+            let slack = if field.is_measured(texel) { SLACK_MEASURED } else { SLACK_FILLED };
+            Unknown { value: field.value[texel].as_dvec3(), stiffness: stiffness(error, local), slack }
         };
         let unknowns = group.unknowns.iter().zip(locals).map(unknown).collect();
         (rows, unknowns)

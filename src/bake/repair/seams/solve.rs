@@ -6,7 +6,7 @@
 //! seams of lightmaps as least squares; the weights are ours). Where that leaves more than what nobody sees, what is
 //! left is added to what the lookup should make up for, and all is solved again from there (the method of multipliers,
 //! Hestenes 1969, Powell 1969): the equations stay as well conditioned as they are. No texel leaves the
-//! range of those that it is to agree with by more than half of that range, nor falls below zero: one that would is held
+//! range of those that it is to agree with by more than its slack, nor falls below zero: one that would is held
 //! on its bound in the next solution. The solver is that of conjugate gradients (Hestenes and Stiefel 1952)
 //! with the diagonal as its preconditioner. All sums run in a fixed order.
 
@@ -29,8 +29,10 @@ const ROUNDS: usize = 60;
 /// The local value goes by what is displayed now; from round to round it changes by no more than this factor.
 const FASTEST: f64 = 2.0;
 
-/// How far a texel may go beyond the range of those that it is to agree with, in that range.
-const BEYOND: f64 = 0.5;
+/// How far a measured texel, and one that was filled in, may go beyond the range of those that it is to agree with, in
+/// that range. A filled one is seen through filtering only, where a measured one beside it takes most of it back.
+pub(super) const SLACK_MEASURED: f64 = 0.5;
+pub(super) const SLACK_FILLED: f64 = 3.0;
 
 /// How often a round is solved again with what went beyond its bounds held there.
 const HOLDS: usize = 3;
@@ -51,6 +53,8 @@ pub(super) struct Unknown {
     pub(super) value: DVec3,
     /// How much a move costs, τ² of it [(cd/m²)⁻²].
     pub(super) stiffness: f64,
+    /// How far it may go beyond the range of those that it is to agree with, in that range.
+    pub(super) slack: f64,
 }
 
 /// How two lookups differ: `difference + Σ weight·move`.
@@ -192,7 +196,7 @@ fn worst(jumps: &[f64]) -> f64 {
 }
 
 /// How far each unknown may move, down and up: not out of the range of all that it is to agree with by more than
-/// [`BEYOND`] of that range, and not below zero. What cannot be made to agree stays apart; it is not driven anywhere.
+/// its slack, and not below zero. What cannot be made to agree stays apart; it is not driven anywhere.
 struct Bounds {
     low: Vec<DVec3>,
     high: Vec<DVec3>,
@@ -211,7 +215,7 @@ impl Bounds {
                 most[unknown as usize] = most[unknown as usize].max(high);
             }
         }
-        let slack = |index: usize| BEYOND * (most[index] - least[index]);
+        let slack = |index: usize| unknowns[index].slack * (most[index] - least[index]);
         let low = |index: usize| (least[index] - slack(index)).max(DVec3::ZERO) - unknowns[index].value;
         let high = |index: usize| most[index] + slack(index) - unknowns[index].value;
         Self { low: (0..unknowns.len()).map(low).collect(), high: (0..unknowns.len()).map(high).collect() }
@@ -342,7 +346,7 @@ mod tests {
     use super::*;
 
     fn unknown(value: f64, error: f64) -> Unknown {
-        Unknown { value: DVec3::splat(value), stiffness: stiffness(error, 1.0) }
+        Unknown { value: DVec3::splat(value), stiffness: stiffness(error, 1.0), slack: SLACK_FILLED }
     }
 
     fn two(values: [f64; 2], errors: [f64; 2]) -> Solution {
