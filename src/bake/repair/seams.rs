@@ -30,6 +30,12 @@ const FILLED_ERROR: f64 = 0.25;
 /// read is its centre.
 const OFF_CENTRE: f64 = 0.25;
 
+/// How far apart both sides of a seam may be, in the sum of their errors, to be taken for one.
+const EXPLAINED: f64 = 8.0;
+
+/// How far a measured texel may be moved, in its error.
+const REACH: f64 = 64.0;
+
 /// What the least local value falls to from a lookup to the farthest that share texels with it, and how often that is
 /// carried on.
 const FALL_OFF: f64 = 0.5;
@@ -187,6 +193,14 @@ impl System {
                 let of_row = &numbers[begin..begin + row.entries.len()];
                 begin += row.entries.len();
                 let entries = || of_row.iter().copied().zip(row.entries.iter().map(|entry| entry.weight));
+                let measured = entries().filter_map(|(number, weight)| {
+                    let (page, texel) = self.places[group.unknowns[number as usize] as usize];
+                    let (field, texel) = (&fields[page as usize], texel as usize);
+                    field.is_measured(texel).then(|| (weight, field.value[texel].as_dvec3(), error_of(field, texel)))
+                });
+                if !may_agree(measured) {
+                    continue;
+                }
                 for (number, weight) in entries() {
                     let (sum, weights) = &mut locals[number as usize];
                     *sum += weight * weight * row.local();
@@ -199,17 +213,17 @@ impl System {
             let (page, texel) = self.places[number as usize];
             let (field, texel) = (&fields[page as usize], texel as usize);
             let local: f64 = sum / weights;
-            let measured = |source: usize| {
-                let off = OFF_CENTRE * steepness(field, source);
-                f64::from(field.stderr[source].max_element()).max(off) / local
-            };
+            let measured = |source: usize| error_of(field, source) / local;
             let error = match owners[page as usize].source(texel) {
                 Some(source) if source == texel => measured(source).clamp(LEAST_ERROR, MOST_ERROR),
                 Some(source) => measured(source).clamp(FILLED_ERROR, MOST_ERROR),
                 None => FILLED_ERROR,
             };
-            let slack = if field.is_measured(texel) { SLACK_MEASURED } else { SLACK_FILLED };
-            Unknown { value: field.value[texel].as_dvec3(), stiffness: stiffness(error, local), slack }
+            let (slack, reach) = match field.is_measured(texel) {
+                true => (SLACK_MEASURED, REACH * error * local),
+                false => (SLACK_FILLED, f64::INFINITY),
+            };
+            Unknown { value: field.value[texel].as_dvec3(), stiffness: stiffness(error, local), slack, reach }
         };
         let unknowns = group.unknowns.iter().zip(locals).map(unknown).collect();
         (rows, unknowns)
@@ -217,6 +231,30 @@ impl System {
 }
 
 /// The largest step from a measured texel to one that it is linked with [cd/m²].
+/// How far off a measured texel may be at the places where lookups read it [cd/m²].
+fn error_of(field: &Field, texel: usize) -> f64 {
+    let off = OFF_CENTRE * steepness(field, texel);
+    let least = LEAST_ERROR * f64::from(field.value[texel].max_element());
+    f64::from(field.stderr[texel].max_element()).max(off).max(least)
+}
+
+/// Whether two lookups could agree: what was measured on both sides (told by the sign of the weights) differs by no
+/// more than errors and slopes explain. Where it does, the light itself has an edge, which no solve may blur.
+fn may_agree(measured: impl Iterator<Item = (f64, DVec3, f64)>) -> bool {
+    let mut sides = [(0.0, DVec3::ZERO, 0.0); 2];
+    for (weight, value, error) in measured {
+        let (weights, values, errors) = &mut sides[usize::from(weight < 0.0)];
+        *weights += weight.abs();
+        *values += weight.abs() * value;
+        *errors += weight.abs() * error;
+    }
+    if sides.iter().any(|(weights, ..)| *weights == 0.0) {
+        return false;
+    }
+    let [a, b] = sides.map(|(weights, values, errors)| (values / weights, errors / weights));
+    (a.0 - b.0).abs().max_element() <= EXPLAINED * (a.1 + b.1)
+}
+
 fn steepness(field: &Field, texel: usize) -> f64 {
     let steps = (-1..=1).flat_map(|y| (-1..=1).map(move |x| [x, y]));
     let linked = steps.filter(|&step| field.links[texel].reaches(step)).filter_map(|step| field.step(texel, step));

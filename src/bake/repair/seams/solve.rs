@@ -29,9 +29,13 @@ const ROUNDS: usize = 60;
 /// The local value goes by what is displayed now; from round to round it changes by no more than this factor.
 const FASTEST: f64 = 2.0;
 
+/// Rounds after which what has not got better by this factor will not.
+const IDLE: usize = 24;
+const BETTER: f64 = 0.95;
+
 /// How far a measured texel, and one that was filled in, may go beyond the range of those that it is to agree with, in
 /// that range. A filled one is seen through filtering only, where a measured one beside it takes most of it back.
-pub(super) const SLACK_MEASURED: f64 = 0.5;
+pub(super) const SLACK_MEASURED: f64 = 3.0;
 pub(super) const SLACK_FILLED: f64 = 3.0;
 
 /// How often a round is solved again with what went beyond its bounds held there.
@@ -55,6 +59,8 @@ pub(super) struct Unknown {
     pub(super) stiffness: f64,
     /// How far it may go beyond the range of those that it is to agree with, in that range.
     pub(super) slack: f64,
+    /// How far it may move at all [cd/m²].
+    pub(super) reach: f64,
 }
 
 /// How two lookups differ: `difference + Σ weight·move`.
@@ -149,6 +155,7 @@ pub(super) fn solve(rows: &Rows, unknowns: &[Unknown], cancel: &CancelToken) -> 
     let mut free = vec![DVec3::ONE; unknowns.len()];
     let bounds = Bounds::new(rows, unknowns);
     let mut goals = rows.difference.clone();
+    let mut idle = 0;
     for _ in 0..ROUNDS {
         let everything = vec![DVec3::ONE; unknowns.len()];
         let pull = Problem { rows, unknowns, goals: &goals, weights: &weights, free: &everything }.downhill(&moves);
@@ -165,8 +172,13 @@ pub(super) fn solve(rows: &Rows, unknowns: &[Unknown], cancel: &CancelToken) -> 
         let after = relative(&left, &now);
         // No faster, or weights and values chase each other.
         local.iter_mut().zip(now).for_each(|(local, now)| *local = now.clamp(*local / FASTEST, *local * FASTEST));
+        let is_better = worst(&after) < BETTER * worst(&best.1);
+        idle = if is_better { 0 } else { idle + 1 };
         if worst(&after) < worst(&best.1) {
             best = (moves.clone(), after.clone());
+        }
+        if idle >= IDLE {
+            break;
         }
         if worst(&after) <= TARGET {
             break;
@@ -196,7 +208,7 @@ fn worst(jumps: &[f64]) -> f64 {
 }
 
 /// How far each unknown may move, down and up: not out of the range of all that it is to agree with by more than
-/// its slack, and not below zero. What cannot be made to agree stays apart; it is not driven anywhere.
+/// its slack, not farther than its own error bars and the light's slope around it make likely, and not below zero. What cannot be made to agree stays apart; it is not driven anywhere.
 struct Bounds {
     low: Vec<DVec3>,
     high: Vec<DVec3>,
@@ -216,8 +228,10 @@ impl Bounds {
             }
         }
         let slack = |index: usize| unknowns[index].slack * (most[index] - least[index]);
-        let low = |index: usize| (least[index] - slack(index)).max(DVec3::ZERO) - unknowns[index].value;
-        let high = |index: usize| most[index] + slack(index) - unknowns[index].value;
+        let reach = |index: usize| DVec3::splat(unknowns[index].reach);
+        let low =
+            |index: usize| ((least[index] - slack(index)).max(DVec3::ZERO) - unknowns[index].value).max(-reach(index));
+        let high = |index: usize| (most[index] + slack(index) - unknowns[index].value).min(reach(index));
         Self { low: (0..unknowns.len()).map(low).collect(), high: (0..unknowns.len()).map(high).collect() }
     }
 
@@ -346,7 +360,12 @@ mod tests {
     use super::*;
 
     fn unknown(value: f64, error: f64) -> Unknown {
-        Unknown { value: DVec3::splat(value), stiffness: stiffness(error, 1.0), slack: SLACK_FILLED }
+        Unknown {
+            value: DVec3::splat(value),
+            stiffness: stiffness(error, 1.0),
+            slack: SLACK_FILLED,
+            reach: f64::INFINITY,
+        }
     }
 
     fn two(values: [f64; 2], errors: [f64; 2]) -> Solution {
