@@ -23,13 +23,13 @@ pub struct Held {
 pub const HELD: [Held; 3] = [
     Held {
         name: "cornell",
-        hash: 0xe8dc_30d1_b01a_87f9,
+        hash: 0x94be_482d_bb99_6db4,
         scene: || glb::load("cornell"),
         density: 1.0,
         layout: Layout::Shared { size: 32 },
     },
-    Held { name: "garden", hash: 0x2d8a_f38d_465d_e3cb, scene: garden, density: 5.0, layout: Layout::Packed },
-    Held { name: "vitrine", hash: 0xc5d2_58ed_83d3_c796, scene: vitrine, density: 4.0, layout: Layout::Packed },
+    Held { name: "garden", hash: 0x6280_a58b_499f_37fc, scene: garden, density: 5.0, layout: Layout::Packed },
+    Held { name: "vitrine", hash: 0x8040_36d3_db9c_1550, scene: vitrine, density: 4.0, layout: Layout::Packed },
 ];
 
 impl Held {

@@ -29,13 +29,18 @@ const ROUNDS: usize = 60;
 /// The local value goes by what is displayed now; from round to round it changes by no more than this factor.
 const FASTEST: f64 = 2.0;
 
+/// The relative jump above which lookups are taken for such as cannot agree, and how often some are left out before
+/// all is left as it was.
+const APART: f64 = 0.05;
+const ATTEMPTS: usize = 2;
+
 /// Rounds after which what has not got better by this factor will not.
 const IDLE: usize = 24;
 const BETTER: f64 = 0.95;
 
 /// How far a measured texel, and one that was filled in, may go beyond the range of those that it is to agree with, in
 /// that range. A filled one is seen through filtering only, where a measured one beside it takes most of it back.
-pub(super) const SLACK_MEASURED: f64 = 3.0;
+pub(super) const SLACK_MEASURED: f64 = 0.5;
 pub(super) const SLACK_FILLED: f64 = 3.0;
 
 /// How often a round is solved again with what went beyond its bounds held there.
@@ -101,6 +106,18 @@ impl Rows {
         self.floor.push(floor);
     }
 
+    /// Some of the rows.
+    fn only(&self, kept: &[usize]) -> Self {
+        let mut only = Self::default();
+        for &row in kept {
+            let begin = if row == 0 { 0 } else { self.ends[row - 1] as usize };
+            let entries = self.entries[begin..self.ends[row] as usize].iter();
+            let entries = entries.map(|&(unknown, weight)| (unknown, f64::from(weight)));
+            only.push([self.difference[row], self.mean[row]], self.floor[row], entries);
+        }
+        only
+    }
+
     fn iter(&self) -> impl Iterator<Item = (usize, &[(u32, f32)])> + '_ {
         let begin = |row: usize| if row == 0 { 0 } else { self.ends[row - 1] as usize };
         (0..self.ends.len()).map(move |row| (row, &self.entries[begin(row)..self.ends[row] as usize]))
@@ -139,8 +156,32 @@ pub(super) fn stiffness(relative_error: f64, local: f64) -> f64 {
     cost * cost
 }
 
-/// Solves one group of seams; `None` if cancelled.
+/// Solves one group of seams; `None` if cancelled. Lookups that cannot be made to agree would drive texels anywhere, so
+/// they are left out, and the rest is solved anew.
 pub(super) fn solve(rows: &Rows, unknowns: &[Unknown], cancel: &CancelToken) -> Option<Solution> {
+    let still = vec![DVec3::ZERO; unknowns.len()];
+    let before = relative(&rows.difference, &rows.local(&still));
+    let mut kept: Vec<usize> = (0..before.len()).collect();
+    let mut moves = still.clone();
+    for attempt in 0..=ATTEMPTS {
+        let solution = solve_all(&rows.only(&kept), unknowns, cancel)?;
+        let agree = |place: usize| solution.after[place] <= APART;
+        let agreed: Vec<usize> = (0..kept.len()).filter(|&place| agree(place)).map(|place| kept[place]).collect();
+        if agreed.len() == kept.len() {
+            moves = solution.moves;
+            break;
+        }
+        if attempt == ATTEMPTS {
+            break;
+        }
+        kept = agreed;
+    }
+    let after = relative(&rows.left(&moves), &rows.local(&moves));
+    Some(Solution { moves, before, after })
+}
+
+/// Solves one group of seams with all of its rows.
+fn solve_all(rows: &Rows, unknowns: &[Unknown], cancel: &CancelToken) -> Option<Solution> {
     let mut moves = vec![DVec3::ZERO; unknowns.len()];
     let mut local = rows.local(&moves);
     let before = relative(&rows.difference, &local);
