@@ -34,7 +34,7 @@ const OFF_CENTRE: f64 = 0.25;
 const EXPLAINED: f64 = 8.0;
 
 /// How far a measured texel may be moved, in its error.
-const REACH: f64 = 64.0;
+const REACH: f64 = 8.0;
 
 /// What the least local value falls to from a lookup to the farthest that share texels with it, and how often that is
 /// carried on.
