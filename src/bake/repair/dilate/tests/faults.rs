@@ -68,6 +68,23 @@ fn glows(field: &mut Field, workers: &Workers<'_>) -> Owners {
     owners
 }
 
+/// Mixes what no link joins: other charts, and rooms behind walls.
+fn reads_across_links(field: &mut Field, workers: &Workers<'_>) -> Owners {
+    let links = std::mem::replace(&mut field.links, vec![Links::ALL; field.value.len()]);
+    let owners = proper(field, workers);
+    field.links = links;
+    owners
+}
+
+/// Adds a little for each thread.
+fn counts_threads(field: &mut Field, workers: &Workers<'_>) -> Owners {
+    let owners = proper(field, workers);
+    let threads = workers.gather_quietly(&[()], |(), _| Some(rayon::current_num_threads())).unwrap();
+    let filled = (0..field.value.len()).find(|&index| owners.source(index).is_some_and(|source| source != index));
+    filled.into_iter().for_each(|index| field.value[index] += 1e-6 * threads[0] as f32);
+    owners
+}
+
 /// Forgets the blocks.
 fn leaves_blocks(field: &mut Field, workers: &Workers<'_>) -> Owners {
     let mut owners = proper(field, workers);
@@ -118,6 +135,9 @@ fn planted_faults_are_found() {
     found(reads_what_stood_there, "not");
     found(overshoots, "within");
     found(glows, "within");
+    found(reads_across_links, "within");
     found(leaves_blocks, "complete");
     found(forgets_charts, "another chart");
+    assert_eq!(is_the_same_on_all_threads(proper, &before), Ok(()));
+    assert!(is_the_same_on_all_threads(counts_threads, &before).is_err());
 }

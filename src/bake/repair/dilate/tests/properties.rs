@@ -240,10 +240,10 @@ fn hidden_texels_go_by_their_own(before: &Field, owners: &Owners) -> Verdict {
 }
 
 /// The same bits whatever the number of threads.
-fn is_the_same_on_all_threads(before: &Field) -> Verdict {
-    let (expected, expected_owners) = run(proper, before, 1);
+fn is_the_same_on_all_threads(dilation: Dilation, before: &Field) -> Verdict {
+    let (expected, expected_owners) = run(dilation, before, 1);
     for threads in [2, 3, 5] {
-        let (after, owners) = run(proper, before, threads);
+        let (after, owners) = run(dilation, before, threads);
         let is_same = after.value.iter().zip(&expected.value).all(|(a, b)| bits(*a) == bits(*b));
         if !is_same || owners.source != expected_owners.source {
             return Err(format!("{threads} threads give other bits than one"));
@@ -272,7 +272,7 @@ fn config(cases: u32) -> ProptestConfig {
 }
 
 proptest! {
-    #![proptest_config(config(192))]
+    #![proptest_config(config(512))]
 
     #[test]
     fn any_field_is_filled_from_what_was_measured_and_from_nothing_else(sketch in sketches()) {
@@ -315,11 +315,11 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(config(48))]
+    #![proptest_config(config(128))]
 
     #[test]
     fn threads_change_nothing(sketch in sketches()) {
-        let verdict = is_the_same_on_all_threads(&sketch.field());
+        let verdict = is_the_same_on_all_threads(proper, &sketch.field());
         prop_assert!(verdict.is_ok(), "{:?}", verdict);
     }
 }
