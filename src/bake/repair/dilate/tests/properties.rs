@@ -210,9 +210,9 @@ fn fills_rings_and_blocks(before: &Field, owners: &Owners) -> Verdict {
     }
     let measured: Vec<usize> = (0..count).filter(|&index| before.is_measured(index)).collect();
     let block = |index: usize| place(before, index).map(|along| along / i64::from(BLOCK));
-    for index in 0..count {
+    for (index, &is_reached) in is_reached.iter().enumerate() {
         let is_filled = owners.source(index).is_some();
-        if is_reached[index] && !is_filled {
+        if is_reached && !is_filled {
             return Err(format!("{index} lies in a ring and is not filled"));
         }
         let mut of_block = (0..count).filter(|&other| block(other) == block(index));
