@@ -77,8 +77,10 @@ impl Sketch {
             }
             for step in [[1, 0], [-1, 1], [0, 1], [1, 1]] {
                 let is_cut = unit() * 16.0 < self.cut as f32;
-                let Some(other) = field.step(index, step).filter(|&other| field.is_measured(other)) else { continue };
-                if !is_cut && field.is_measured(index) && field.chart[index] == field.chart[other] {
+                // Links to hidden texels, too, which no bake makes: nobody may follow them.
+                let is_covered = |index: &usize| field.state[*index] != TexelState::Empty;
+                let Some(other) = field.step(index, step).filter(is_covered) else { continue };
+                if !is_cut && is_covered(&index) && field.chart[index] == field.chart[other] {
                     field.links[index].add(step);
                     field.links[other].add(step.map(i32::wrapping_neg));
                 }
