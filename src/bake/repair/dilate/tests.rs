@@ -5,6 +5,9 @@ use crate::bake::CancelToken;
 use crate::bake::repair::TexelState;
 use crate::bake::validity::Links;
 
+#[path = "tests/properties.rs"]
+mod properties;
+
 const SIZE: [u32; 2] = [24, 20];
 
 /// A page with the texels of a chart where `chart` says so, linked to all around.
