@@ -152,6 +152,13 @@ impl<'a> Look<'a> {
         jumps
     }
 
+    /// The largest jump over the brightest that is shown at any seam.
+    pub fn worst_jump_over_brightest(&self, pairs: &[Pair]) -> f32 {
+        let looked = || pairs.iter().map(|pair| pair.sides.map(|side| self.at(side)));
+        let brightest = looked().flatten().fold(0.0_f32, |most, value| most.max(value.max_element()));
+        looked().map(|[a, b]| (a - b).abs().max_element()).fold(0.0, f32::max) / brightest
+    }
+
     pub fn worst_jump(&self, pairs: &[Pair]) -> f32 {
         self.jumps(pairs).first().copied().unwrap_or_default()
     }

@@ -5,6 +5,7 @@
 //! 2. `samples` puts points along them, and leaves out where the surface is not meant to be one;
 //! 3. `solve` moves the texels of each group of joints that share any.
 
+mod across;
 mod borders;
 mod samples;
 mod solve;
@@ -17,7 +18,7 @@ use crate::bake::workers::Workers;
 use crate::bake::{BakeError, Jump, SeamReport};
 use glam::DVec3;
 use samples::{Sample, Sampling};
-use solve::{Rows, SLACK_FILLED, SLACK_MEASURED, Solution, Unknown, solve, stiffness};
+use solve::{Rows, Solution, Unknown, solve};
 
 /// Bounds of the relative standard error that a measured texel may claim.
 const LEAST_ERROR: f64 = 0.01;
@@ -38,7 +39,7 @@ const REACH: f64 = 8.0;
 
 /// What the least local value falls to from a lookup to the farthest that share texels with it, and how often that is
 /// carried on.
-const FALL_OFF: f64 = 0.5;
+const FALL_OFF: f64 = 0.9;
 const SPREAD: u32 = 12;
 
 /// A texel: page and number.
@@ -55,6 +56,8 @@ pub(super) fn mend(
     if samples.is_empty() {
         return Ok(None);
     }
+    across::read_across(fields, &samples);
+    samples = samples.into_iter().filter_map(|Sample { joint, sides, .. }| Sample::new(joint, sides, fields)).collect();
     let system = System::new(&samples);
     system.spread(&mut samples);
     let groups = system.groups(&samples);
@@ -219,18 +222,14 @@ impl System {
                 Some(source) => measured(source).clamp(FILLED_ERROR, MOST_ERROR),
                 None => FILLED_ERROR,
             };
-            let (slack, reach) = match field.is_measured(texel) {
-                true => (SLACK_MEASURED, REACH * error * local),
-                false => (SLACK_FILLED, f64::INFINITY),
-            };
-            Unknown { value: field.value[texel].as_dvec3(), stiffness: stiffness(error, local), slack, reach }
+            let reach = if field.is_measured(texel) { REACH * error * local } else { f64::INFINITY };
+            Unknown { value: field.value[texel].as_dvec3(), error: error * local, reach }
         };
         let unknowns = group.unknowns.iter().zip(locals).map(unknown).collect();
         (rows, unknowns)
     }
 }
 
-/// The largest step from a measured texel to one that it is linked with [cd/m²].
 /// How far off a measured texel may be at the places where lookups read it [cd/m²].
 fn error_of(field: &Field, texel: usize) -> f64 {
     let off = OFF_CENTRE * steepness(field, texel);
@@ -255,6 +254,7 @@ fn may_agree(measured: impl Iterator<Item = (f64, DVec3, f64)>) -> bool {
     (a.0 - b.0).abs().max_element() <= EXPLAINED * (a.1 + b.1)
 }
 
+/// The largest step from a measured texel to one that it is linked with [cd/m²].
 fn steepness(field: &Field, texel: usize) -> f64 {
     let steps = (-1..=1).flat_map(|y| (-1..=1).map(move |x| [x, y]));
     let linked = steps.filter(|&step| field.links[texel].reaches(step)).filter_map(|step| field.step(texel, step));

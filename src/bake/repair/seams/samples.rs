@@ -12,7 +12,7 @@ use super::borders::{Border, Joint};
 use crate::bake::charts::Charts;
 use crate::bake::repair::{Field, Surroundings, TexelState};
 use crate::trace::PathStart;
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DMat2, DVec2, DVec3, Vec3};
 
 /// Samples of a joint lie farther apart than this [texels of the finer side].
 const CLOSEST: f64 = 0.02;
@@ -38,7 +38,7 @@ const ASIDE: f64 = 0.25;
 const MOST_ASIDE: f64 = 1.0 / 3.0;
 
 /// The local value is at least this share of the brightest texel that the lookups read.
-const LEAST_LOCAL: f64 = 1e-2;
+const LEAST_LOCAL: f64 = 0.02;
 
 /// Lookups that lie closer on the same page are the same [texels].
 const SAME_PLACE: f64 = 1e-3;
@@ -65,11 +65,24 @@ pub(super) struct Row {
     pub(super) entries: Vec<Entry>,
 }
 
+/// How a page is read on one side of a point of a joint.
+#[derive(Clone, Debug)]
+pub(super) struct Reading {
+    pub(super) page: u32,
+    /// Where [texels].
+    pub(super) place: DVec2,
+    /// From texels to metres along the joint and into the surface on this side.
+    pub(super) metres: DMat2,
+    /// The texels that lookups there read and that may move.
+    pub(super) moving: Vec<u32>,
+}
+
 /// A point of a joint.
 #[derive(Clone, Debug)]
 pub(super) struct Sample {
     /// Which joint.
     pub(super) joint: u32,
+    pub(super) sides: [Reading; 2],
     /// What the local value of both lookups is at least [cd/m²].
     pub(super) floor: f64,
     /// For each kind of filtering.
@@ -112,6 +125,8 @@ struct Side<'a> {
     normal: Vec3,
     /// Across the edge, into the triangle, in the world.
     inwards: DVec3,
+    /// What a step of a texel is in the world [m].
+    steps: [DVec3; 2],
     /// A place on the triangle beside the joint.
     beside: PathStart,
     /// Where that is read [texels].
@@ -155,31 +170,48 @@ impl<'a> Sampling<'a> {
         {
             return None;
         }
-        let moving = [self.moving(a)?, self.moving(b)?];
-        let mut rows = Filtering::ALL.map(|filtering| self.row(filtering, sides, &moving));
+        let reading = |side: &Side<'_>| {
+            let [right, down] = side.steps;
+            let axes = [along.normalize(), side.inwards.normalize()];
+            let metres = DMat2::from_cols_array_2d(&[right, down].map(|step| axes.map(|axis| axis.dot(step))));
+            Some(Reading { page: side.page, place: side.place, metres, moving: self.moving(side)? })
+        };
+        Sample::new(joint, [reading(a)?, reading(b)?], self.fields)
+    }
+}
+
+impl Sample {
+    /// `None` where there is no light.
+    pub(super) fn new(joint: u32, sides: [Reading; 2], fields: &[Field]) -> Option<Self> {
+        let mut rows = Filtering::ALL.map(|filtering| Row::new(filtering, &sides, fields));
         // What the one lookup reads may move what the other does.
         let floor = rows.iter().map(|row| row.floor).fold(0.0, f64::max);
         rows.iter_mut().for_each(|row| row.floor = floor);
-        (floor > 0.0 && floor.is_finite()).then_some(Sample { joint, rows, floor })
+        (floor > 0.0 && floor.is_finite()).then_some(Self { joint, sides, rows, floor })
     }
+}
 
+impl Row {
     /// How the two sides differ by one kind of filtering.
-    fn row(&self, filtering: Filtering, sides: &[Side<'_>; 2], moving: &[Vec<usize>; 2]) -> Row {
-        let mut row = Row { difference: DVec3::ZERO, mean: DVec3::ZERO, floor: 0.0, entries: Vec::new() };
-        for ((side, moving), sign) in sides.iter().zip(moving).zip([1.0, -1.0]) {
-            let field = &self.fields[side.page as usize];
+    fn new(filtering: Filtering, sides: &[Reading; 2], fields: &[Field]) -> Self {
+        let mut row = Self { difference: DVec3::ZERO, mean: DVec3::ZERO, floor: 0.0, entries: Vec::new() };
+        for (side, sign) in sides.iter().zip([1.0, -1.0]) {
+            let field = &fields[side.page as usize];
             for (texel, weight) in filtering.taps(field.size, side.place).iter() {
                 let value = field.value[texel].as_dvec3();
                 row.floor = row.floor.max(LEAST_LOCAL * value.max_element());
                 row.difference += sign * weight * value;
                 row.mean += 0.5 * weight * value;
-                if moving.contains(&texel) && weight != 0.0 {
+                if side.moving.contains(&(texel as u32)) && weight != 0.0 {
                     row.entries.push(Entry { texel: (side.page, texel as u32), weight: sign * weight });
                 }
             }
         }
         row
     }
+}
+
+impl<'a> Sampling<'a> {
 
     /// One side of a joint, at a place in parts of its edge.
     fn side(&self, border: &'a Border, at: f64) -> Option<Side<'a>> {
@@ -213,12 +245,17 @@ impl<'a> Sampling<'a> {
             let texel: DVec2 = turn.iter().zip(weights).map(|(&corner, weight)| weight * texels[corner]).sum();
             self.rects[border.receiver as usize].point(texel / size)
         };
-        height.is_finite().then(|| Side {
+        let places = texels.map(|texel| self.rects[border.receiver as usize].point(texel / size));
+        let on_page = DMat2::from_cols(places[1] - places[0], places[2] - places[0]).inverse();
+        let steps = [on_page.x_axis, on_page.y_axis]
+            .map(|step| step.x * (world[1] - world[0]) + step.y * (world[2] - world[0]));
+        (height.is_finite() && on_page.is_finite()).then(|| Side {
             border,
             page: rectangle.page,
             place: read(on_edge),
             normal: start(on_edge).normal(),
             inwards,
+            steps,
             beside: start(in_turn),
             place_beside: read(in_turn),
         })
@@ -226,7 +263,7 @@ impl<'a> Sampling<'a> {
 
     /// The texels around a side that may move: those that hang together with the place beside the joint. `None` where
     /// the nearest is hidden, or of another room.
-    fn moving(&self, side: &Side<'_>) -> Option<Vec<usize>> {
+    fn moving(&self, side: &Side<'_>) -> Option<Vec<u32>> {
         let field = &self.fields[side.page as usize];
         let owners = &self.owners[side.page as usize];
         let chart = self.charts.of(side.border.receiver, side.border.triangle);
@@ -288,7 +325,7 @@ fn places(a: &Border, b: &Border, joint: &Joint) -> Vec<f64> {
 }
 
 /// The texels of a lookup that hang together with one of them: measured ones by links, and what was filled from those.
-fn flood(field: &Field, owners: &Owners, taps: &Taps, from: usize) -> Vec<usize> {
+fn flood(field: &Field, owners: &Owners, taps: &Taps, from: usize) -> Vec<u32> {
     let chart = field.chart[from];
     let is_read = |texel: usize| taps.iter().any(|(read, _)| read == texel);
     let mut moving = vec![from];
@@ -312,5 +349,5 @@ fn flood(field: &Field, owners: &Owners, taps: &Taps, from: usize) -> Vec<usize>
             moving.push(texel);
         }
     }
-    moving
+    moving.into_iter().map(|texel| texel as u32).collect()
 }
