@@ -132,7 +132,7 @@ fn by_hand(name: &str, patches: &[Patch]) {
 #[ignore = "slow: the sphere's twelve charts alone take a minute"]
 fn no_jump_on_unwrapped_shapes() {
     for (name, shape) in SHAPES {
-        check(name, &shape(), Charting::Unwrapped, &Setting { density: 24.0, ..Setting::default() }).unwrap();
+        check(name, &shape(), Charting::Unwrapped, &Setting { density: 96.0, ..Setting::default() }).unwrap();
     }
 }
 
@@ -176,7 +176,7 @@ fn what_texels_do_not_resolve_is_left_and_small() {
             100.0 * above,
             100.0 * worst
         );
-        assert!(above < 5e-3 && worst < 5e-3, "{above} {worst}");
+        assert!(above < 1e-2 && worst < 5e-3, "{above} {worst}");
     }
 }
 

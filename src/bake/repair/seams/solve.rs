@@ -27,6 +27,9 @@ const CLOSE: f64 = 0.1;
 const SWEEPS: usize = 8000;
 const PERIOD: usize = 20;
 
+/// If in that time no texel moves by more than this, in its error, none will.
+const SETTLED: f64 = 1e-3;
+
 /// An unknown: one texel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Unknown {
@@ -118,6 +121,7 @@ pub(super) fn solve(rows: &Rows, unknowns: &[Unknown], cancel: &CancelToken) -> 
         if busy.is_empty() {
             break;
         }
+        let before = state.moves.clone();
         for _ in 0..PERIOD / 2 {
             if cancel.is_cancelled() {
                 return None;
@@ -125,6 +129,9 @@ pub(super) fn solve(rows: &Rows, unknowns: &[Unknown], cancel: &CancelToken) -> 
             // There and back again, so that both ends of a seam hear of each other.
             busy.iter().for_each(|&row| state.pull(row));
             busy.iter().rev().for_each(|&row| state.pull(row));
+        }
+        if state.is_settled(&before) {
+            break;
         }
     }
     let after = rows.jumps(&state.moves);
@@ -142,6 +149,8 @@ struct State<'a> {
     strengths: Vec<f64>,
     /// What a pull of one changes in the difference [(cd/m²)²].
     yields: Vec<f64>,
+    /// The jump that nobody sees, of each row [cd/m²].
+    unseen: Vec<f64>,
     /// Sum of all on each unknown [1/(cd/m²)].
     forces: Vec<DVec3>,
     /// Where that holds it [cd/m²].
@@ -160,15 +169,25 @@ impl<'a> State<'a> {
             pulls: vec![DVec3::ZERO; rows.len()],
             strengths: yields.iter().map(|&yields: &f64| STRENGTH / yields.sqrt()).collect(),
             yields,
+            unseen: vec![0.0; rows.len()],
             forces: vec![DVec3::ZERO; unknowns.len()],
         }
     }
 
-    /// The rows that pull or should.
-    fn busy(&self) -> Vec<usize> {
+    /// Whether no unknown has moved by what would matter.
+    fn is_settled(&self, before: &[DVec3]) -> bool {
+        let steps = self.moves.iter().zip(before).map(|(&now, &before)| (now - before).abs().max_element());
+        steps.zip(self.unknowns).all(|(step, unknown)| step <= SETTLED * unknown.error)
+    }
+
+    /// The rows that pull or should; none if all are done.
+    fn busy(&mut self) -> Vec<usize> {
         let mut is_done = true;
+        for row in 0..self.rows.len() {
+            self.unseen[row] = UNSEEN * self.rows.local(row, &self.moves);
+        }
         let busy = (0..self.rows.len()).filter(|&row| {
-            let unseen = UNSEEN * self.rows.local(row, &self.moves);
+            let unseen = self.unseen[row];
             let excess = self.rows.left(row, &self.moves).abs() - unseen;
             let pull = self.pulls[row];
             let is_spent = pull.abs().cmpge(DVec3::splat(self.strengths[row]));
@@ -181,7 +200,7 @@ impl<'a> State<'a> {
 
     /// Lets one row pull as hard as it takes to be unseen.
     fn pull(&mut self, row: usize) {
-        let unseen = DVec3::splat(UNSEEN * self.rows.local(row, &self.moves));
+        let unseen = DVec3::splat(self.unseen[row]);
         let left = self.rows.left(row, &self.moves);
         let (before, yields) = (self.pulls[row], self.yields[row]);
         let up = (before + (left - unseen) / yields).max(DVec3::ZERO);
