@@ -1,14 +1,16 @@
-//! A paraboloid through weighted texels, as it is in the middle.
+//! A plane and a paraboloid through weighted texels, as they are in the middle.
 
 use glam::Vec3;
 
-/// Terms of a paraboloid: 1, x, y, x², xy, y².
+/// Terms of a paraboloid: 1, x, y, x², xy, y²; the first three are those of a plane.
 const TERMS: usize = 6;
+const TERMS_OF_PLANE: usize = 3;
 
-/// What holds slopes and curvature where the texels do not, in weights of one texel at the window's rim.
-const RIDGE: f64 = 0.003;
+/// What holds slopes and curvature where the texels do not, in weights of one texel at the window's rim. Little enough
+/// to leave the few texels at the foot of something their slope.
+const RIDGE: f64 = 0.00003;
 
-/// A paraboloid in the middle of its window.
+/// A plane or a paraboloid in the middle of its window.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fitted {
     pub(super) value: Vec3,
@@ -16,12 +18,14 @@ pub(super) struct Fitted {
     pub(super) slope: [Vec3; 2],
     /// Variance of the value.
     pub(super) variance: Vec3,
+    /// The share of the middle's own value in it.
+    pub(super) own: f32,
 }
 
 impl Fitted {
     /// A texel by itself.
     pub(super) fn of_texel(value: Vec3, variance: Vec3) -> Self {
-        Self { value, variance, slope: [Vec3::ZERO; 2] }
+        Self { value, variance, slope: [Vec3::ZERO; 2], own: 1.0 }
     }
 }
 
@@ -40,50 +44,80 @@ impl Place {
     }
 }
 
-/// Sums of a weighted least squares fit.
+/// A texel of a fit, with both halves' values.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Member {
+    pub(super) weight: f32,
+    pub(super) place: Place,
+    pub(super) values: [Vec3; 2],
+    /// Variance of a half.
+    pub(super) variance: Vec3,
+    /// That of all channels over the middle's.
+    pub(super) ratio: f32,
+}
+
+/// What both halves are by the same weights.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Fits {
+    pub(super) plane: [Fitted; 2],
+    pub(super) paraboloid: [Fitted; 2],
+}
+
+/// Sums of a weighted least squares fit to both halves.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sums {
-    /// Σ w b bᵀ and Σ w² b bᵀ, their upper triangles.
+    /// Σ w b bᵀ and Σ w² r b bᵀ, their upper triangles; r is the ratio of a texel's variance to the middle's.
     normal: [[f32; TERMS]; TERMS],
     squared: [[f32; TERMS]; TERMS],
-    /// Σ w b y.
-    moments: [Vec3; TERMS],
-    /// Σ w v.
+    /// Σ w b y, of both halves.
+    moments: [[Vec3; TERMS]; 2],
+    /// Σ w v and Σ w r.
     variance: Vec3,
+    ratio: f32,
 }
 
 type Matrix = [[f64; TERMS]; TERMS];
 
 impl Sums {
     /// Adds a texel.
-    pub(super) fn add(&mut self, weight: f32, Place(terms): Place, value: Vec3, variance: Vec3) {
+    pub(super) fn add(&mut self, member: Member) {
+        let Member { weight, place: Place(terms), values, variance, ratio } = member;
         for row in 0..TERMS {
             let weighted = weight * terms[row];
             for (column, term) in terms.iter().enumerate().skip(row) {
                 self.normal[row][column] += weighted * term;
-                self.squared[row][column] += weight * weighted * term;
+                self.squared[row][column] += ratio * weight * weighted * term;
             }
-            self.moments[row] += value * weighted;
+            for (moments, value) in self.moments.iter_mut().zip(values) {
+                moments[row] += value * weighted;
+            }
         }
         self.variance += variance * weight;
+        self.ratio += ratio * weight;
     }
 
-    /// The paraboloid in the middle of a window of some radius [texels].
-    pub(super) fn fitted(&self, radius: f32) -> Fitted {
+    /// The fits in the middle of a window of some radius [texels].
+    pub(super) fn fitted(&self, radius: f32) -> Fits {
+        // The factor of the plane's matrix is the corner of the paraboloid's.
         let factor = self.factor();
-        let [value, along_x, along_y] = [0, 1, 2].map(|term| solve(&factor, term));
+        let of_terms = |terms: usize| self.of_terms(terms, &factor, radius);
+        Fits { plane: of_terms(TERMS_OF_PLANE), paraboloid: of_terms(TERMS) }
+    }
+
+    fn of_terms(&self, terms: usize, factor: &Matrix, radius: f32) -> [Fitted; 2] {
+        let [value, along_x, along_y] = [0, 1, 2].map(|term| solve(factor, terms, term));
         let mut spread = 0.0;
         for (a, &by_row) in value.iter().enumerate() {
             for (b, &by_column) in value.iter().enumerate() {
                 spread += by_row * by_column * f64::from(self.squared[a.min(b)][a.max(b)]);
             }
         }
-        let sum = |row: [f64; TERMS]| (0..TERMS).map(|term| self.moments[term] * row[term] as f32).sum::<Vec3>();
-        Fitted {
-            value: sum(value),
-            slope: [sum(along_x) / radius, sum(along_y) / radius],
-            variance: self.variance * (spread.max(0.0) as f32 / self.normal[0][0]),
-        }
+        let variance = self.variance * (spread.max(0.0) as f32 / self.ratio);
+        self.moments.map(|moments| {
+            let sum = |row: [f64; TERMS]| (0..TERMS).map(|term| moments[term] * row[term] as f32).sum::<Vec3>();
+            let slope = [sum(along_x) / radius, sum(along_y) / radius];
+            Fitted { value: sum(value), slope, variance, own: value[0] as f32 }
+        })
     }
 
     /// Cholesky's factor of the normal matrix. The ridge keeps its diagonal from zero.
@@ -104,16 +138,16 @@ impl Sums {
     }
 }
 
-/// A row of the inverse of a matrix by its Cholesky factor: L y = e, Lᵀ x = y.
-fn solve(factor: &Matrix, unit: usize) -> [f64; TERMS] {
+/// A row of the inverse of a matrix's corner by its Cholesky factor: L y = e, Lᵀ x = y.
+fn solve(factor: &Matrix, terms: usize, unit: usize) -> [f64; TERMS] {
     let mut y = [0.0; TERMS];
-    for row in 0..TERMS {
+    for row in 0..terms {
         let known: f64 = (0..row).map(|column| factor[row][column] * y[column]).sum();
         y[row] = (f64::from(u8::from(row == unit)) - known) / factor[row][row];
     }
     let mut x = [0.0; TERMS];
-    for row in (0..TERMS).rev() {
-        let known: f64 = (row + 1..TERMS).map(|column| factor[column][row] * x[column]).sum();
+    for row in (0..terms).rev() {
+        let known: f64 = (row + 1..terms).map(|column| factor[column][row] * x[column]).sum();
         x[row] = (y[row] - known) / factor[row][row];
     }
     x
