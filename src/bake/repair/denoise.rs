@@ -7,8 +7,10 @@
 //! surface is smooth almost everywhere, which the paraboloid keeps, right up to a chart's border; at the edge of a
 //! shadow the texels beyond are not like those before it.
 //!
-//! It is done twice. A first, small window fits each half by itself; a second, larger one compares those fits, which
-//! are less noisy and have slopes, so that texels of one slope are alike however far down they lie.
+//! It is done twice. A first, small window finds its likes in the measurement; a second, larger one compares the fits
+//! of the first, which are less noisy and have slopes, so that texels of one slope are alike however far down they lie.
+//! Which of the two is nearer to the truth is estimated (`select`). A texel that light only missed by chance counts as
+//! noisy like those about it (`luck`).
 //!
 //! What it promises: a window is walked over links, so that nothing comes from another chart, from behind a wall, or
 //! from a texel that is not measured. A channel without error keeps its bits. No texel moves by more than
@@ -38,7 +40,7 @@ use texels::Texels;
 use window::{Reached, Window};
 
 /// How far a texel looks for others like it, first and then [texels].
-const RADII: [f32; 2] = [6.5, 9.0];
+const RADII: [f32; 2] = [6.5, 10.0];
 
 /// How far a texel may be moved, in standard errors.
 const REACH: f32 = 4.0;
@@ -66,42 +68,13 @@ fn estimates(fields: &[Field], error: impl Fn(&Field) -> &Vec<Vec3>) -> Vec<Esti
     fields.iter().flat_map(of_field).collect()
 }
 
-/// What a texel is made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    /// A paraboloid through the texels of the small window.
-    Paraboloid,
-    /// One through those of the large window.
-    WideParaboloid,
-    /// A plane through them.
-    WidePlane,
-}
-
-/// All measured texels by fits of all kinds.
-struct Filtered {
-    small: Vec<Level>,
-    large: Vec<Level>,
-}
-
-impl Filtered {
-    /// One kind of fit, each half by the other half's weights.
-    fn of(&self, kind: Kind) -> impl Iterator<Item = [Fitted; 2]> {
-        let level = if kind == Kind::Paraboloid { &self.small } else { &self.large };
-        level.iter().map(move |level| match kind {
-            Kind::Paraboloid | Kind::WideParaboloid => level.crossed,
-            Kind::WidePlane => level.plane,
-        })
-    }
-}
-
 /// A texel by those in a window that look like it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Level {
-    /// Paraboloids through each half by its own weights, for nothing but to find those that look like it.
+    /// Each half by its own weights: for nothing but to find those that look like it.
     own: [Fitted; 2],
-    /// Paraboloids and planes through each half by the other half's weights.
+    /// Each half by the other half's weights.
     crossed: [Fitted; 2],
-    plane: [Fitted; 2],
     /// Least and most of what it is made of.
     range: [Vec3; 2],
 }
@@ -113,16 +86,15 @@ fn denoise_page(field: &mut Field, workers: &Workers<'_>) -> Result<(), BakeErro
     let small = level(&texels, &looks, small, workers)?;
     let looks = [0, 1].map(|half| Looks::fitted(&texels, small.iter().map(|level| level.own[half])));
     let large = level(&texels, &looks, large, workers)?;
-    let filtered = Filtered { small, large };
-    let best = select::best(&texels, &filtered, workers)?;
-    let ranges = filtered.small.iter().zip(&filtered.large).map(|(small, large)| widest(small.range, large.range));
-    for ((&index, candidate), range) in texels.measured.iter().zip(best).zip(ranges) {
+    let best = select::best(&texels, [&small, &large], workers)?;
+    let ranges = small.iter().zip(&large).map(|(small, large)| widest(small.range, large.range));
+    for ((&index, [value, residual]), range) in texels.measured.iter().zip(best).zip(ranges) {
         // A half has twice the variance of the whole.
         let stderr = root(0.5 * texels.variance[index]);
         let is_exact = stderr.cmpeq(Vec3::ZERO);
-        let value = allowed(field.value[index], REACH * stderr.max(field.stderr[index]), range, candidate.value);
+        let value = allowed(field.value[index], REACH * stderr.max(field.stderr[index]), range, value);
         field.value[index] = Vec3::select(is_exact, field.value[index], value);
-        field.residual[index] = Vec3::select(is_exact, Vec3::ZERO, candidate.residual);
+        field.residual[index] = Vec3::select(is_exact, Vec3::ZERO, residual);
     }
     Ok(())
 }
@@ -132,12 +104,7 @@ fn live(cancel: &CancelToken) -> Option<()> {
 }
 
 /// All measured texels by the texels that look like them.
-fn level(
-    texels: &Texels,
-    looks: &[Looks<'_>; 2],
-    radius: f32,
-    workers: &Workers<'_>,
-) -> Result<Vec<Level>, BakeError> {
+fn level(texels: &Texels, looks: &[Looks<'_>; 2], radius: f32, workers: &Workers<'_>) -> Result<Vec<Level>, BakeError> {
     let window = Window::new(radius);
     workers.gather_quietly(&texels.measured, |&index, cancel| {
         live(cancel)?;
@@ -158,14 +125,14 @@ fn filter(texels: &Texels, looks: &[Looks<'_>; 2], reached: &[Reached], radius: 
     };
     let own = member(&reached[0]);
     let mut range = [own.values[0].min(own.values[1]), own.values[0].max(own.values[1])];
-    let mut sums = [Sums::default(), Sums::default()];
+    let mut sums = [Sums::about(own.values), Sums::about(own.values)];
     for sums in &mut sums {
         sums.add(own);
     }
     for other in &reached[1..] {
         let member = member(other);
         // Of two that look alike the one with less noise says more.
-        let certain = f32::min(1.0, 2.0 / (1.0 + member.ratio));
+        let certain = f32::min(1.0, 5.0 / (1.0 + member.ratio));
         let near = 1.0 - other.squared_distance() / (radius * radius);
         for (looks, sums) in looks.iter().zip(&mut sums) {
             let weight = near * certain * looks.likeness(middle, other.index, other.step);
@@ -176,13 +143,8 @@ fn filter(texels: &Texels, looks: &[Looks<'_>; 2], reached: &[Reached], radius: 
             }
         }
     }
-    let [by_first, by_second] = sums.map(|sums| sums.fitted(radius));
-    Level {
-        own: [by_first.paraboloid[0], by_second.paraboloid[1]],
-        crossed: [by_second.paraboloid[0], by_first.paraboloid[1]],
-        plane: [by_second.plane[0], by_first.plane[1]],
-        range,
-    }
+    let [[first, second_by_first], [first_by_second, second]] = sums.map(|sums| sums.fitted(radius));
+    Level { own: [first, second], crossed: [first_by_second, second_by_first], range }
 }
 
 fn widest([low, high]: [Vec3; 2], [other_low, other_high]: [Vec3; 2]) -> [Vec3; 2] {

@@ -1,16 +1,15 @@
-//! A plane and a paraboloid through weighted texels, as they are in the middle.
+//! A paraboloid through weighted texels, as it is in the middle.
 
 use glam::Vec3;
 
-/// Terms of a paraboloid: 1, x, y, x², xy, y²; the first three are those of a plane.
+/// Terms of a paraboloid: 1, x, y, x², xy, y².
 const TERMS: usize = 6;
-const TERMS_OF_PLANE: usize = 3;
 
 /// What holds slopes and curvature where the texels do not, in weights of one texel at the window's rim. Little enough
 /// to leave the few texels at the foot of something their slope.
 const RIDGE: f64 = 0.00003;
 
-/// A plane or a paraboloid in the middle of its window.
+/// A paraboloid in the middle of its window.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fitted {
     pub(super) value: Vec3,
@@ -34,9 +33,6 @@ impl Fitted {
 pub(super) struct Place([f32; TERMS]);
 
 impl Place {
-    /// The middle of a window.
-    pub(super) const MIDDLE: Self = Self([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-
     /// A place at a step from the middle of a window of some radius [texels].
     pub(super) fn new(step: [i32; 2], radius: f32) -> Self {
         let [x, y] = step.map(|step| step as f32 / radius);
@@ -56,20 +52,15 @@ pub(super) struct Member {
     pub(super) ratio: f32,
 }
 
-/// What both halves are by the same weights.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Fits {
-    pub(super) plane: [Fitted; 2],
-    pub(super) paraboloid: [Fitted; 2],
-}
-
 /// Sums of a weighted least squares fit to both halves.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sums {
     /// Σ w b bᵀ and Σ w² r b bᵀ, their upper triangles; r is the ratio of a texel's variance to the middle's.
     normal: [[f32; TERMS]; TERMS],
     squared: [[f32; TERMS]; TERMS],
-    /// Σ w b y, of both halves.
+    /// What the halves' values are counted from: far sums of near numbers lose their digits.
+    origin: [Vec3; 2],
+    /// Σ w b (y − origin), of both halves.
     moments: [[Vec3; TERMS]; 2],
     /// Σ w v and Σ w r.
     variance: Vec3,
@@ -79,6 +70,11 @@ pub(super) struct Sums {
 type Matrix = [[f64; TERMS]; TERMS];
 
 impl Sums {
+    /// Sums of a fit about a texel with these values.
+    pub(super) fn about(origin: [Vec3; 2]) -> Self {
+        Self { origin, ..Self::default() }
+    }
+
     /// Adds a texel.
     pub(super) fn add(&mut self, member: Member) {
         let Member { weight, place: Place(terms), values, variance, ratio } = member;
@@ -88,24 +84,18 @@ impl Sums {
                 self.normal[row][column] += weighted * term;
                 self.squared[row][column] += ratio * weight * weighted * term;
             }
-            for (moments, value) in self.moments.iter_mut().zip(values) {
-                moments[row] += value * weighted;
+            for half in 0..2 {
+                self.moments[half][row] += (values[half] - self.origin[half]) * weighted;
             }
         }
         self.variance += variance * weight;
         self.ratio += ratio * weight;
     }
 
-    /// The fits in the middle of a window of some radius [texels].
-    pub(super) fn fitted(&self, radius: f32) -> Fits {
-        // The factor of the plane's matrix is the corner of the paraboloid's.
+    /// The paraboloids of both halves in the middle of a window of some radius [texels].
+    pub(super) fn fitted(&self, radius: f32) -> [Fitted; 2] {
         let factor = self.factor();
-        let of_terms = |terms: usize| self.of_terms(terms, &factor, radius);
-        Fits { plane: of_terms(TERMS_OF_PLANE), paraboloid: of_terms(TERMS) }
-    }
-
-    fn of_terms(&self, terms: usize, factor: &Matrix, radius: f32) -> [Fitted; 2] {
-        let [value, along_x, along_y] = [0, 1, 2].map(|term| solve(factor, terms, term));
+        let [value, along_x, along_y] = [0, 1, 2].map(|term| solve(&factor, term));
         let mut spread = 0.0;
         for (a, &by_row) in value.iter().enumerate() {
             for (b, &by_column) in value.iter().enumerate() {
@@ -113,10 +103,11 @@ impl Sums {
             }
         }
         let variance = self.variance * (spread.max(0.0) as f32 / self.ratio);
-        self.moments.map(|moments| {
+        [0, 1].map(|half| {
+            let (moments, origin) = (&self.moments[half], self.origin[half]);
             let sum = |row: [f64; TERMS]| (0..TERMS).map(|term| moments[term] * row[term] as f32).sum::<Vec3>();
             let slope = [sum(along_x) / radius, sum(along_y) / radius];
-            Fitted { value: sum(value), slope, variance, own: value[0] as f32 }
+            Fitted { value: origin + sum(value), slope, variance, own: value[0] as f32 }
         })
     }
 
@@ -138,16 +129,16 @@ impl Sums {
     }
 }
 
-/// A row of the inverse of a matrix's corner by its Cholesky factor: L y = e, Lᵀ x = y.
-fn solve(factor: &Matrix, terms: usize, unit: usize) -> [f64; TERMS] {
+/// A row of the inverse of a matrix by its Cholesky factor: L y = e, Lᵀ x = y.
+fn solve(factor: &Matrix, unit: usize) -> [f64; TERMS] {
     let mut y = [0.0; TERMS];
-    for row in 0..terms {
+    for row in 0..TERMS {
         let known: f64 = (0..row).map(|column| factor[row][column] * y[column]).sum();
         y[row] = (f64::from(u8::from(row == unit)) - known) / factor[row][row];
     }
     let mut x = [0.0; TERMS];
-    for row in (0..terms).rev() {
-        let known: f64 = (row + 1..terms).map(|column| factor[column][row] * x[column]).sum();
+    for row in (0..TERMS).rev() {
+        let known: f64 = (row + 1..TERMS).map(|column| factor[column][row] * x[column]).sum();
         x[row] = (y[row] - known) / factor[row][row];
     }
     x

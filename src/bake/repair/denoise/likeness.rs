@@ -20,7 +20,7 @@ pub(super) struct Looks<'a> {
     /// Mean squared difference of two like surroundings, in units of its variance, that is noise without doubt, and by
     /// how much it may be exceeded.
     noise: f32,
-    excess: f32,
+    pub(super) excess: f32,
 }
 
 impl<'a> Looks<'a> {

@@ -4,8 +4,9 @@
 //! like a black that is known without error. If light comes to each texel about λ times, a share of exp(−λ) of them
 //! finds none; and λ is known, since rare light of any one strength has a mean squared over its variance of λ. So a
 //! black texel is unlucky if light was found about it, if no more of its surrounding is black than by such chance, and
-//! if those that were found do not all lie to one side. It then has the variance of its surrounding. Otherwise it is
-//! black: beyond a shadow's edge there are too many like it.
+//! if those that were found do not all lie to one side. It then has the mean variance of its surrounding, and so has a
+//! lucky one, or the lucky would give way and the unlucky not. Otherwise it is black: beyond a shadow's edge there are
+//! too many like it.
 //!
 //! Each channel by itself. Owns this guess; changes no value.
 
@@ -15,20 +16,22 @@ use crate::math::Portable;
 use glam::{Vec2, Vec3};
 
 /// How many standard deviations more than expected may be black, and how many the lit ones may lie off the middle.
-const BLACK: f64 = 3.0;
-const ASIDE: f64 = 2.0;
+const BLACK: f64 = 4.0;
+const ASIDE: f64 = 2.5;
 
-/// The variances of texels that light only missed, and of all others what they are.
+/// The variances of all texels where chance is seen to rule, and of all others what they are.
 pub(super) fn variance_of_unlucky(texels: &Texels, window: &Window) -> Vec<Vec3> {
     let mut variance = texels.variance.clone();
+    let any_black = [0, 1, 2].map(|channel| texels.measured.iter().any(|&index| is_black(texels, index, channel)));
+    if any_black == [false; 3] {
+        return variance;
+    }
     for &index in &texels.measured {
-        let is_black = |channel: usize| is_black(texels, index, channel);
-        if !(0..3).any(is_black) {
-            continue;
-        }
         let reached = window.reach(texels, index);
-        for channel in (0..3).filter(|&channel| is_black(channel)) {
-            variance[index][channel] = Surrounding::new(texels, &reached, channel).variance_if_unlucky() as f32;
+        for channel in (0..3).filter(|&channel| any_black[channel]) {
+            if let Some(shared) = Surrounding::new(texels, &reached, channel).variance_by_chance() {
+                variance[index][channel] = shared as f32;
+            }
         }
     }
     variance
@@ -72,11 +75,11 @@ impl Surrounding {
         sums
     }
 
-    /// Mean variance of a half if the middle was missed by chance, otherwise zero.
-    fn variance_if_unlucky(&self) -> f64 {
+    /// Mean variance of a half if chance made the black ones.
+    fn variance_by_chance(&self) -> Option<f64> {
         let lit = self.count - self.black;
-        if lit == 0.0 || self.variance == 0.0 {
-            return 0.0;
+        if lit == 0.0 || self.black == 0.0 || self.variance == 0.0 {
+            return None;
         }
         // A half has twice the variance of the whole.
         let expected = self.value * self.value / (self.count * 0.5 * self.variance);
@@ -87,6 +90,6 @@ impl Surrounding {
         let aside = f64::from((self.steps_to_lit / lit as f32 - middle).length_squared());
         let spread = self.squares / self.count - f64::from(middle.length_squared());
         let is_aside = aside > ASIDE * ASIDE * spread * (self.black / self.count) / lit;
-        if is_too_black || is_aside { 0.0 } else { self.variance / self.count }
+        (!is_too_black && !is_aside).then_some(self.variance / self.count)
     }
 }
