@@ -21,13 +21,6 @@ pub(super) struct Fitted {
     pub(super) own: f32,
 }
 
-impl Fitted {
-    /// A texel by itself.
-    pub(super) fn of_texel(value: Vec3, variance: Vec3) -> Self {
-        Self { value, variance, slope: [Vec3::ZERO; 2], own: 1.0 }
-    }
-}
-
 /// The terms at a place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place([f32; TERMS]);

@@ -20,7 +20,7 @@ pub(super) struct Looks<'a> {
     /// Mean squared difference of two like surroundings, in units of its variance, that is noise without doubt, and by
     /// how much it may be exceeded.
     noise: f32,
-    pub(super) excess: f32,
+    excess: f32,
 }
 
 impl<'a> Looks<'a> {
@@ -30,6 +30,12 @@ impl<'a> Looks<'a> {
         let values = texels.halves[half].iter().zip(&texels.variance).map(of_texel).collect();
         let slopes = vec![[Vec3::ZERO; 2]; texels.links.len()];
         Self { texels, values, slopes, noise: 1.0, excess: 3.0 }
+    }
+
+    /// The same with another excess.
+    #[cfg(test)]
+    pub(super) fn exceeded_by(self, excess: f32) -> Self {
+        Self { excess, ..self }
     }
 
     /// One half as fitted. Fits that share texels differ by less than their variances say, all of a surrounding in the
