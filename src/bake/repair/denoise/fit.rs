@@ -71,14 +71,16 @@ impl Sums {
     /// Adds a texel.
     pub(super) fn add(&mut self, member: Member) {
         let Member { weight, place: Place(terms), values, variance, ratio } = member;
+        let [first, second] = self.origin;
+        let offsets = [values[0] - first, values[1] - second];
         for row in 0..TERMS {
             let weighted = weight * terms[row];
             for (column, term) in terms.iter().enumerate().skip(row) {
                 self.normal[row][column] += weighted * term;
                 self.squared[row][column] += ratio * weight * weighted * term;
             }
-            for half in 0..2 {
-                self.moments[half][row] += (values[half] - self.origin[half]) * weighted;
+            for (moments, offset) in self.moments.iter_mut().zip(offsets) {
+                moments[row] += offset * weighted;
             }
         }
         self.variance += variance * weight;
