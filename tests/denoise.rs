@@ -16,8 +16,11 @@ use glam::Vec3;
 use judge::{Judge, blurred};
 use scenes::Case;
 
-/// Samples per texel of the references.
+/// Samples per texel of the references: their errors are four times below the least that they judge.
 const LONG: u32 = 8192;
+
+/// And those of the Cornell box, which is denoised best.
+const LONGER: u32 = 16384;
 
 fn bake(case: &Case, samples_per_texel: u32, denoise: Denoise) -> Lightmap {
     let settings = BakeSettings {
@@ -61,15 +64,18 @@ fn assert_case(case: &Case) {
         raw.relative, denoised.relative, undenoised.relative
     );
     println!(
-        "  contrast of edges and contacts: denoised {:.3?}, raw {:.3?}",
+        "  contrast of edges and contacts: denoised {:.3?}, raw 64 {:.3?}, raw 512 {:.3?}",
         judge.contrasts(&page.radiance),
-        judge.contrasts(&page.raw)
+        judge.contrasts(&page.raw),
+        judge.contrasts(&many.pages[0].raw)
     );
+    println!("  raw 512 before seams were mended: {:.4?}", judge.error(&many.pages[0].raw));
     for (estimate, error) in estimates {
         println!("  estimated {estimate:.4}, is {:.4}", error.relative);
     }
     println!("  total light: {:+.5} of the raw", judge.total(&page.radiance) / judge.total(&page.raw) - 1.0);
 
+    assert!(4.0 * long < undenoised.root.min(denoised.root), "the reference is too noisy: {long}");
     assert!(denoised.root < undenoised.root, "{denoised:?} is not below {undenoised:?}");
     assert!(denoised.relative < undenoised.relative, "{denoised:?} is not below {undenoised:?}");
     assert_eq!(faults_of_contrast(&judge, &page.radiance), Vec::<String>::new());
@@ -85,19 +91,16 @@ fn assert_case(case: &Case) {
 }
 
 #[test]
-#[ignore = "misses its target: contacts keep less of their contrast than is asked for"]
 fn cornell_box() {
     assert_case(&scenes::cornell());
 }
 
 #[test]
-#[ignore = "misses its target: the estimated error is half of the true one"]
 fn room_with_a_patch_of_sun() {
     assert_case(&scenes::sunlit());
 }
 
 #[test]
-#[ignore = "misses its target: its error is above that of 512 paths, as measured"]
 fn round_things_under_many_lamps() {
     assert_case(&scenes::lamps());
 }
@@ -107,7 +110,8 @@ fn round_things_under_many_lamps() {
 #[ignore = "makes the references"]
 fn make_references() {
     for case in scenes::all() {
-        let lightmap = bake(&case, LONG, Denoise::Off);
+        let samples = if case.name == "cornell" { LONGER } else { LONG };
+        let lightmap = bake(&case, samples, Denoise::Off);
         let page: &Page = &lightmap.pages[0];
         reference::save(case.name, page);
         println!("{}: {:?}", case.name, lightmap.report.relative_stderr);

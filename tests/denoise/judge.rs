@@ -4,6 +4,9 @@ use crate::reference::Reference;
 use bevy_kiln::bake::{Page, TexelState};
 use glam::{DVec3, Vec3};
 
+/// Steps to the eight neighbours.
+const STEPS: [[i32; 2]; 8] = [[1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [-1, 1], [1, -1], [-1, -1]];
+
 /// An error over a page, by luminance; the reference's own is taken out.
 #[derive(Clone, Copy, Debug)]
 pub struct Error {
@@ -75,15 +78,16 @@ impl<'a> Judge<'a> {
         ]
     }
 
-    /// The texels on both sides of one.
+    /// The texels on both sides of one, in its row or its column.
     fn edge(&self, index: usize, [x, y]: [i32; 2]) -> Option<[usize; 2]> {
         let measured = TexelState::Measured;
         // Each pair once.
-        (x + y > 0).then_some(())?;
+        (x * y == 0 && x + y > 0).then_some(())?;
         Some([self.beside(index, [x, y], measured)?, self.beside(index, [-x, -y], measured)?])
     }
 
-    /// A texel at the foot of something, and the third one from it.
+    /// A texel at the foot of something, and the third one from it. In all eight directions: in four there are too few
+    /// to be told from their noise.
     fn contact(&self, index: usize, [x, y]: [i32; 2]) -> Option<[usize; 2]> {
         let is_dark = |texel: usize| luminance(self.reference.value[texel]) < 1e-3 * self.mean;
         let below =
@@ -95,7 +99,7 @@ impl<'a> Judge<'a> {
     fn contrast(&self, values: &[Vec3], least: f64, pair: impl Fn(usize, [i32; 2]) -> Option<[usize; 2]>) -> f64 {
         let (mut found, mut truth, mut count) = (0.0, 0.0, 0);
         for &index in &self.texels {
-            for step in [[1, 0], [0, 1], [-1, 0], [0, -1]] {
+            for step in STEPS {
                 let Some([one, other]) = pair(index, step) else { continue };
                 let [a, b] = [one, other].map(|texel| luminance(self.reference.value[texel]));
                 // By the reference alone, or noise would choose.

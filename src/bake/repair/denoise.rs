@@ -7,8 +7,10 @@
 //! surface is smooth almost everywhere, which the paraboloid keeps, right up to a chart's border; at the edge of a
 //! shadow the texels beyond are not like those before it.
 //!
-//! It is done twice. A first, small window fits each half by itself; a second, larger one compares those fits, which
-//! are less noisy and have slopes, so that texels of one slope are alike however far down they lie.
+//! It is done twice. A first, small window finds its likes in the measurement; a second, larger one compares the fits
+//! of the first, which are less noisy and have slopes, so that texels of one slope are alike however far down they lie.
+//! Which of the two is nearer to the truth is estimated (`select`). A texel that light only missed by chance counts as
+//! noisy like those about it (`luck`).
 //!
 //! What it promises: a window is walked over links, so that nothing comes from another chart, from behind a wall, or
 //! from a texel that is not measured. A channel without error keeps its bits. No texel moves by more than
@@ -18,6 +20,8 @@
 
 mod fit;
 mod likeness;
+mod luck;
+mod select;
 mod texels;
 mod window;
 
@@ -29,14 +33,14 @@ use crate::bake::gather::{Estimate, relative_error};
 use crate::bake::report::Denoised;
 use crate::bake::workers::Workers;
 use crate::bake::{BakeError, CancelToken};
-use fit::{Fitted, Place, Sums};
+use fit::{Fitted, Member, Place, Sums};
 use glam::Vec3;
 use likeness::Looks;
 use texels::Texels;
 use window::{Reached, Window};
 
 /// How far a texel looks for others like it, first and then [texels].
-const RADII: [f32; 2] = [4.6, 8.0];
+const RADII: [f32; 2] = [6.5, 10.0];
 
 /// How far a texel may be moved, in standard errors.
 const REACH: f32 = 4.0;
@@ -64,29 +68,33 @@ fn estimates(fields: &[Field], error: impl Fn(&Field) -> &Vec<Vec3>) -> Vec<Esti
     fields.iter().flat_map(of_field).collect()
 }
 
-/// A texel with half of the runs, as the other half weighs it.
+/// A texel by those in a window that look like it.
 #[derive(Clone, Copy, Debug, Default)]
-struct Filtered {
-    fitted: Fitted,
+struct Level {
+    /// Each half by its own weights: for nothing but to find those that look like it.
+    own: [Fitted; 2],
+    /// Each half by the other half's weights.
+    crossed: [Fitted; 2],
     /// Least and most of what it is made of.
     range: [Vec3; 2],
 }
 
 fn denoise_page(field: &mut Field, workers: &Workers<'_>) -> Result<(), BakeError> {
     let texels = Texels::new(field);
-    let [first, second] = RADII.map(Window::new);
-    let measured = [0, 1].map(|half| Looks::measured(&texels, half));
-    let fits = filtered(&texels, &first, workers, |half, reached| {
-        filter(&texels, &measured[half], half, reached, RADII[0]).fitted
-    })?;
-    let fitted = [0, 1].map(|half| Looks::fitted(&texels, fits.iter().map(|fits| fits[half])));
-    let filtered = filtered(&texels, &second, workers, |half, reached| {
-        filter(&texels, &fitted[half], 1 - half, reached, RADII[1])
-    })?;
-    for (&index, halves) in texels.measured.iter().zip(&filtered) {
-        let [value, residual] = merged(&texels, field, index, halves);
-        field.value[index] = value;
-        field.residual[index] = residual;
+    let looks = [0, 1].map(|half| Looks::measured(&texels, half));
+    let [small, large] = RADII;
+    let small = level(&texels, &looks, small, workers)?;
+    let looks = [0, 1].map(|half| Looks::fitted(&texels, small.iter().map(|level| level.own[half])));
+    let large = level(&texels, &looks, large, workers)?;
+    let best = select::best(&texels, [&small, &large], workers)?;
+    let ranges = small.iter().zip(&large).map(|(small, large)| widest(small.range, large.range));
+    for ((&index, [value, residual]), range) in texels.measured.iter().zip(best).zip(ranges) {
+        // A half has twice the variance of the whole.
+        let stderr = root(0.5 * texels.variance[index]);
+        let is_exact = stderr.cmpeq(Vec3::ZERO);
+        let value = allowed(field.value[index], REACH * stderr.max(field.stderr[index]), range, value);
+        field.value[index] = Vec3::select(is_exact, field.value[index], value);
+        field.residual[index] = Vec3::select(is_exact, Vec3::ZERO, residual);
     }
     Ok(())
 }
@@ -95,52 +103,58 @@ fn live(cancel: &CancelToken) -> Option<()> {
     (!cancel.is_cancelled()).then_some(())
 }
 
-/// Something of each measured texel and each half, from the texels that can be reached.
-fn filtered<T: Send>(
-    texels: &Texels,
-    window: &Window,
-    workers: &Workers<'_>,
-    work: impl Fn(usize, &[Reached]) -> T + Sync,
-) -> Result<Vec<[T; 2]>, BakeError> {
+/// All measured texels by the texels that look like them.
+fn level(texels: &Texels, looks: &[Looks<'_>; 2], radius: f32, workers: &Workers<'_>) -> Result<Vec<Level>, BakeError> {
+    let window = Window::new(radius);
     workers.gather_quietly(&texels.measured, |&index, cancel| {
         live(cancel)?;
-        let reached = window.reach(texels, index);
-        Some([0, 1].map(|half| work(half, &reached)))
+        Some(filter(texels, looks, &window.reach(texels, index), radius))
     })
 }
 
-/// What a texel of one half is by the texels that look like it.
-fn filter(texels: &Texels, looks: &Looks<'_>, half: usize, reached: &[Reached], radius: f32) -> Filtered {
-    let measured = &texels.halves[half];
+/// What a texel is by the texels that look like it.
+fn filter(texels: &Texels, looks: &[Looks<'_>; 2], reached: &[Reached], radius: f32) -> Level {
     let middle = reached[0].index;
-    let own = measured[middle];
-    let mut range = [own, own];
-    let mut sums = Sums::default();
-    sums.add(1.0, Place::MIDDLE, own, texels.variance[middle]);
+    let variance = texels.variance[middle].element_sum();
+    let member = |other: &Reached| {
+        let index = other.index;
+        let ratio = if variance > 0.0 { texels.variance[index].element_sum() / variance } else { 1.0 };
+        let values = texels.halves.each_ref().map(|half| half[index]);
+        let place = Place::new(other.step, radius);
+        Member { weight: 1.0, place, values, variance: texels.variance[index], ratio }
+    };
+    let own = member(&reached[0]);
+    let mut range = [own.values[0].min(own.values[1]), own.values[0].max(own.values[1])];
+    let mut sums = [Sums::about(own.values), Sums::about(own.values)];
+    for sums in &mut sums {
+        sums.add(own);
+    }
     for other in &reached[1..] {
+        let member = member(other);
+        // Of two that look alike the one with less noise says more.
+        let certain = f32::min(1.0, 5.0 / (1.0 + member.ratio));
         let near = 1.0 - other.squared_distance() / (radius * radius);
-        let weight = near * looks.likeness(middle, other.index, other.step);
-        if weight > 0.0 {
-            let value = measured[other.index];
-            sums.add(weight, Place::new(other.step, radius), value, texels.variance[other.index]);
-            range = [range[0].min(value), range[1].max(value)];
+        for (looks, sums) in looks.iter().zip(&mut sums) {
+            let weight = near * certain * looks.likeness(middle, other.index, other.step);
+            if weight > 0.0 {
+                sums.add(Member { weight, ..member });
+                let [first, second] = member.values;
+                range = widest(range, [first.min(second), first.max(second)]);
+            }
         }
     }
-    Filtered { fitted: sums.fitted(radius), range }
+    let [[first, second_by_first], [first_by_second, second]] = sums.map(|sums| sums.fitted(radius));
+    Level { own: [first, second], crossed: [first_by_second, second_by_first], range }
 }
 
-/// The mean of both halves within what is allowed, and its standard error.
-fn merged(texels: &Texels, field: &Field, index: usize, halves: &[Filtered; 2]) -> [Vec3; 2] {
-    let [first, second] = halves;
-    let measured = field.value[index];
-    // A half has twice the variance of the whole.
-    let reach = REACH * root(0.5 * texels.variance[index]).max(field.stderr[index]);
-    let low = first.range[0].min(second.range[0]).max(measured - reach);
-    let high = first.range[1].max(second.range[1]).min(measured + reach);
-    let value = (0.5 * (first.fitted.value + second.fitted.value)).max(low.min(measured)).min(high.max(measured));
-    let residual = root(0.25 * (first.fitted.variance + second.fitted.variance));
-    let is_exact = field.stderr[index].cmpeq(Vec3::ZERO);
-    [Vec3::select(is_exact, measured, value), Vec3::select(is_exact, Vec3::ZERO, residual)]
+fn widest([low, high]: [Vec3; 2], [other_low, other_high]: [Vec3; 2]) -> [Vec3; 2] {
+    [low.min(other_low), high.max(other_high)]
+}
+
+/// A value no further from what was measured than it may be, and within the range of what it is made of.
+fn allowed(measured: Vec3, reach: Vec3, [low, high]: [Vec3; 2], value: Vec3) -> Vec3 {
+    let (low, high) = (low.max(measured - reach), high.min(measured + reach));
+    value.max(low.min(measured)).min(high.max(measured))
 }
 
 fn root(squares: Vec3) -> Vec3 {

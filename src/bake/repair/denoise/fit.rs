@@ -5,8 +5,9 @@ use glam::Vec3;
 /// Terms of a paraboloid: 1, x, y, x², xy, y².
 const TERMS: usize = 6;
 
-/// What holds slopes and curvature where the texels do not, in weights of one texel at the window's rim.
-const RIDGE: f64 = 0.003;
+/// What holds slopes and curvature where the texels do not, in weights of one texel at the window's rim. Little enough
+/// to leave the few texels at the foot of something their slope.
+const RIDGE: f64 = 0.00003;
 
 /// A paraboloid in the middle of its window.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,13 +17,8 @@ pub(super) struct Fitted {
     pub(super) slope: [Vec3; 2],
     /// Variance of the value.
     pub(super) variance: Vec3,
-}
-
-impl Fitted {
-    /// A texel by itself.
-    pub(super) fn of_texel(value: Vec3, variance: Vec3) -> Self {
-        Self { value, variance, slope: [Vec3::ZERO; 2] }
-    }
+    /// The share of the middle's own value in it.
+    pub(super) own: f32,
 }
 
 /// The terms at a place.
@@ -30,9 +26,6 @@ impl Fitted {
 pub(super) struct Place([f32; TERMS]);
 
 impl Place {
-    /// The middle of a window.
-    pub(super) const MIDDLE: Self = Self([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-
     /// A place at a step from the middle of a window of some radius [texels].
     pub(super) fn new(step: [i32; 2], radius: f32) -> Self {
         let [x, y] = step.map(|step| step as f32 / radius);
@@ -40,36 +33,62 @@ impl Place {
     }
 }
 
-/// Sums of a weighted least squares fit.
+/// A texel of a fit, with both halves' values.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Member {
+    pub(super) weight: f32,
+    pub(super) place: Place,
+    pub(super) values: [Vec3; 2],
+    /// Variance of a half.
+    pub(super) variance: Vec3,
+    /// That of all channels over the middle's.
+    pub(super) ratio: f32,
+}
+
+/// Sums of a weighted least squares fit to both halves.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sums {
-    /// Σ w b bᵀ and Σ w² b bᵀ, their upper triangles.
+    /// Σ w b bᵀ and Σ w² r b bᵀ, their upper triangles; r is the ratio of a texel's variance to the middle's.
     normal: [[f32; TERMS]; TERMS],
     squared: [[f32; TERMS]; TERMS],
-    /// Σ w b y.
-    moments: [Vec3; TERMS],
-    /// Σ w v.
+    /// What the halves' values are counted from: far sums of near numbers lose their digits.
+    origin: [Vec3; 2],
+    /// Σ w b (y − origin), of both halves.
+    moments: [[Vec3; TERMS]; 2],
+    /// Σ w v and Σ w r.
     variance: Vec3,
+    ratio: f32,
 }
 
 type Matrix = [[f64; TERMS]; TERMS];
 
 impl Sums {
+    /// Sums of a fit about a texel with these values.
+    pub(super) fn about(origin: [Vec3; 2]) -> Self {
+        Self { origin, ..Self::default() }
+    }
+
     /// Adds a texel.
-    pub(super) fn add(&mut self, weight: f32, Place(terms): Place, value: Vec3, variance: Vec3) {
+    pub(super) fn add(&mut self, member: Member) {
+        let Member { weight, place: Place(terms), values, variance, ratio } = member;
+        let [first, second] = self.origin;
+        let offsets = [values[0] - first, values[1] - second];
         for row in 0..TERMS {
             let weighted = weight * terms[row];
             for (column, term) in terms.iter().enumerate().skip(row) {
                 self.normal[row][column] += weighted * term;
-                self.squared[row][column] += weight * weighted * term;
+                self.squared[row][column] += ratio * weight * weighted * term;
             }
-            self.moments[row] += value * weighted;
+            for (moments, offset) in self.moments.iter_mut().zip(offsets) {
+                moments[row] += offset * weighted;
+            }
         }
         self.variance += variance * weight;
+        self.ratio += ratio * weight;
     }
 
-    /// The paraboloid in the middle of a window of some radius [texels].
-    pub(super) fn fitted(&self, radius: f32) -> Fitted {
+    /// The paraboloids of both halves in the middle of a window of some radius [texels].
+    pub(super) fn fitted(&self, radius: f32) -> [Fitted; 2] {
         let factor = self.factor();
         let [value, along_x, along_y] = [0, 1, 2].map(|term| solve(&factor, term));
         let mut spread = 0.0;
@@ -78,12 +97,13 @@ impl Sums {
                 spread += by_row * by_column * f64::from(self.squared[a.min(b)][a.max(b)]);
             }
         }
-        let sum = |row: [f64; TERMS]| (0..TERMS).map(|term| self.moments[term] * row[term] as f32).sum::<Vec3>();
-        Fitted {
-            value: sum(value),
-            slope: [sum(along_x) / radius, sum(along_y) / radius],
-            variance: self.variance * (spread.max(0.0) as f32 / self.normal[0][0]),
-        }
+        let variance = self.variance * (spread.max(0.0) as f32 / self.ratio);
+        [0, 1].map(|half| {
+            let (moments, origin) = (&self.moments[half], self.origin[half]);
+            let sum = |row: [f64; TERMS]| (0..TERMS).map(|term| moments[term] * row[term] as f32).sum::<Vec3>();
+            let slope = [sum(along_x) / radius, sum(along_y) / radius];
+            Fitted { value: origin + sum(value), slope, variance, own: value[0] as f32 }
+        })
     }
 
     /// Cholesky's factor of the normal matrix. The ridge keeps its diagonal from zero.

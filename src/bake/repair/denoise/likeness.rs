@@ -2,7 +2,7 @@
 
 use super::fit::Fitted;
 use super::texels::Texels;
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 /// The share of what may differ up to which two texels are alike in full.
 const PLATEAU: f32 = 0.25;
@@ -13,7 +13,10 @@ const WHOLE: f32 = 9.0;
 /// What texels look like, and how much of their differences may be noise.
 pub(super) struct Looks<'a> {
     texels: &'a Texels,
-    fitted: Vec<Fitted>,
+    /// Values and their variances.
+    values: Vec<[Vec3A; 2]>,
+    /// Change from texel to texel, along the columns and the rows.
+    slopes: Vec<[Vec3; 2]>,
     /// Mean squared difference of two like surroundings, in units of its variance, that is noise without doubt, and by
     /// how much it may be exceeded.
     noise: f32,
@@ -23,19 +26,28 @@ pub(super) struct Looks<'a> {
 impl<'a> Looks<'a> {
     /// One half as measured. Differences of independent texels are 1 in the mean.
     pub(super) fn measured(texels: &'a Texels, half: usize) -> Self {
-        let of_texel = |(value, variance): (&Vec3, &Vec3)| Fitted::of_texel(*value, *variance);
-        let fitted = texels.halves[half].iter().zip(&texels.variance).map(of_texel).collect();
-        Self { texels, fitted, noise: 1.0, excess: 1.6 }
+        let of_texel = |(value, variance): (&Vec3, &Vec3)| [Vec3A::from(*value), Vec3A::from(*variance)];
+        let values = texels.halves[half].iter().zip(&texels.variance).map(of_texel).collect();
+        let slopes = vec![[Vec3::ZERO; 2]; texels.links.len()];
+        Self { texels, values, slopes, noise: 1.0, excess: 3.0 }
+    }
+
+    /// The same with another excess.
+    #[cfg(test)]
+    pub(super) fn exceeded_by(self, excess: f32) -> Self {
+        Self { excess, ..self }
     }
 
     /// One half as fitted. Fits that share texels differ by less than their variances say, all of a surrounding in the
     /// same way.
     pub(super) fn fitted(texels: &'a Texels, fits: impl Iterator<Item = Fitted>) -> Self {
-        let mut fitted = vec![Fitted::default(); texels.links.len()];
+        let count = texels.links.len();
+        let (mut values, mut slopes) = (vec![[Vec3A::ZERO; 2]; count], vec![[Vec3::ZERO; 2]; count]);
         for (&index, fit) in texels.measured.iter().zip(fits) {
-            fitted[index] = fit;
+            values[index] = [fit.value, fit.variance].map(Vec3A::from);
+            slopes[index] = fit.slope;
         }
-        Self { texels, fitted, noise: 0.5, excess: 3.5 }
+        Self { texels, values, slopes, noise: 0.5, excess: 3.5 }
     }
 
     /// How much two texels look alike, in [0, 1].
@@ -46,11 +58,11 @@ impl<'a> Looks<'a> {
             // where light is found but rarely.
             return 0.0;
         }
-        let rise = self.rise(here, there, step);
+        let rise = Vec3A::from(self.rise(here, there, step));
         let difference = |here: usize, there: usize| {
-            let [here, there] = [&self.fitted[here], &self.fitted[there]];
-            let difference = here.value + rise - there.value;
-            (difference * difference / (here.variance + there.variance + f32::MIN_POSITIVE)).element_sum() / 3.0
+            let [[here, variance_here], [there, variance_there]] = [self.values[here], self.values[there]];
+            let difference = here + rise - there;
+            difference * difference / (variance_here + variance_there + Vec3A::splat(f32::MIN_POSITIVE))
         };
         let both = texels.links[here] & texels.links[there];
         let (mut sum, mut count) = (difference(here, there), 1.0);
@@ -58,6 +70,8 @@ impl<'a> Looks<'a> {
             sum += difference(texels.neighbour(here, number), texels.neighbour(there, number));
             count += 1.0;
         }
+        // Added up as three numbers: four would be in an order that depends on the processor.
+        let sum = Vec3::from(sum).element_sum() / 3.0;
         // The fewer there are the more the mean may be off by chance.
         let excess = (sum / count - self.noise).max(0.0) * f32::sqrt(count / WHOLE);
         ((1.0 - excess / self.excess) / (1.0 - PLATEAU)).clamp(0.0, 1.0)
@@ -65,7 +79,7 @@ impl<'a> Looks<'a> {
 
     /// What the slopes of both say about their difference: all of it, if both lie on one paraboloid.
     fn rise(&self, here: usize, there: usize, [x, y]: [i32; 2]) -> Vec3 {
-        let [[hx, hy], [tx, ty]] = [self.fitted[here].slope, self.fitted[there].slope];
+        let [[hx, hy], [tx, ty]] = [self.slopes[here], self.slopes[there]];
         0.5 * ((hx + tx) * x as f32 + (hy + ty) * y as f32)
     }
 }

@@ -107,32 +107,30 @@ fn what_has_no_error_keeps_its_bits() {
 fn scaled_radiance_gives_scaled_texels() {
     let field = noisy([24, 20], 3, 0.08, SHADOW);
     let plain = denoised(&field);
-    for scale in [1e-6_f32, 1e-3, 1024.0, 1e6] {
+    for scale in [1e-6_f32, 1e-3, 1024.0, 1e6, 1.0 / 4096.0] {
         let mut scaled = field.clone();
         for layer in [&mut scaled.value, &mut scaled.stderr, &mut scaled.half] {
             layer.iter_mut().for_each(|texel| *texel *= scale);
         }
         for (one, other) in plain.value.iter().zip(&denoised(&scaled).value) {
-            assert!((*one - *other / scale).length() < 1e-4 * one.length(), "{one} {other} {scale}");
+            assert!((*one - *other / scale).length() < 3e-4 * one.length(), "{one} {other} {scale}");
+            // A power of two scales all that is worked out, to the bit.
+            assert!(scale.to_bits() & 0x7f_ffff != 0 || *one == *other / scale, "{one} {other} {scale}");
         }
     }
 }
 
-/// Rare light: one run in 100 brings all of it.
 #[test]
 fn light_that_is_rarely_found_is_not_lost() {
-    let mut field = noisy([64, 64], 1, 0.0, GREY);
-    let mut random = Random::new(77);
-    for index in 0..field.value.len() {
-        let runs: Vec<Vec3> = (0..16).map(|_| Vec3::splat(if random.unit() < 0.01 { 100.0 } else { 0.0 })).collect();
-        measure(&mut field, index, &runs);
+    for chance in [0.003, 0.01, 0.03, 0.1] {
+        let field = rare([64, 64], 77, |_| chance);
+        let sum = |field: &Field| field.value.iter().map(|value| f64::from(value.x)).sum::<f64>();
+        let after = denoised(&field);
+        let squares: f64 = field.stderr.iter().map(|error| f64::from(error.x).powi(2)).sum();
+        let change = (sum(&after) - sum(&field)) / squares.sqrt();
+        assert!(change.abs() < 1.0, "{chance}: the total moved by {change} of its standard errors");
+        assert!(after.value.iter().all(|value| value.min_element() >= 0.0));
     }
-    let sum = |field: &Field| field.value.iter().map(|value| f64::from(value.x)).sum::<f64>();
-    let after = denoised(&field);
-    let squares: f64 = field.stderr.iter().map(|error| f64::from(error.x).powi(2)).sum();
-    let change = (sum(&after) - sum(&field)) / squares.sqrt();
-    assert!(change.abs() < 1.0, "the total moved by {change} of its standard errors");
-    assert!(after.value.iter().all(|value| value.min_element() >= 0.0));
 }
 
 /// Weights that know the noise that they weigh keep it, and make too little of what is left.
@@ -140,24 +138,64 @@ fn light_that_is_rarely_found_is_not_lost() {
 fn weights_of_the_same_half_are_no_good() {
     let field = noisy([48, 48], 21, 0.1, GREY);
     let texels = Texels::new(&field);
-    let window = Window::new(RADII[0]);
     let cancel = CancelToken::default();
     let workers = Workers::new(None, &(), &cancel).unwrap();
-    let looks = [0, 1].map(|half| Looks::measured(&texels, half));
-    let ratio = |swapped: usize| {
-        let work = |half: usize, reached: &[Reached]| filter(&texels, &looks[half], half ^ swapped, reached, RADII[0]);
+    // Sharper than those that are used, which would show it less.
+    let looks = [0, 1].map(|half| Looks::measured(&texels, half).exceeded_by(1.0));
+    let levels = level(&texels, &looks, 4.6, &workers).unwrap();
+    let ratio = |halves: fn(&Level) -> [Fitted; 2]| {
         let (mut squares, mut variances) = (0.0, 0.0);
-        for halves in filtered(&texels, &window, &workers, work).unwrap() {
-            for half in halves {
-                squares += luminance(half.fitted.value - GREY(0.0, 0.0)).powi(2);
-                variances += luminance(root(half.fitted.variance)).powi(2);
-            }
+        for half in levels.iter().flat_map(halves) {
+            squares += luminance(half.value - GREY(0.0, 0.0)).powi(2);
+            variances += luminance(root(half.variance)).powi(2);
         }
         f64::sqrt(squares / variances)
     };
-    let [same, other] = [0, 1].map(ratio);
+    let [same, other] = [ratio(|level| level.own), ratio(|level| level.crossed)];
     assert!((other - 1.0).abs() < 0.15, "{other}");
     assert!(same > 1.05 * other, "{same} against {other}");
+}
+
+/// A page where a run finds light with some chance, by column, and then always the same.
+fn rare([width, height]: [u32; 2], seed: u64, chance: impl Fn(u32) -> f32) -> Field {
+    let mut field = noisy([width, height], 1, 0.0, GREY);
+    let mut random = Random::new(seed);
+    for index in 0..field.value.len() {
+        let chance = chance(index as u32 % width);
+        let runs: Vec<Vec3> =
+            (0..16).map(|_| Vec3::splat(if random.unit() < chance { 1.0 / 16.0 } else { 0.0 })).collect();
+        measure(&mut field, index, &runs);
+    }
+    field
+}
+
+#[test]
+fn what_light_missed_by_chance_is_no_speck() {
+    for (seed, chance) in [(1, 0.03), (2, 0.1), (3, 0.2)] {
+        let field = rare([64, 64], seed, |_| chance);
+        let after = denoised(&field);
+        let black = |field: &Field| field.value.iter().filter(|value| **value == Vec3::ZERO).count();
+        assert!(black(&field) > 40, "nothing to be seen");
+        assert!(20 * black(&after) < black(&field), "{} black, then {}", black(&field), black(&after));
+        let truth = |_, _| Vec3::splat(chance / 16.0);
+        assert!(3.0 * error(&after, truth) < error(&field, truth), "{chance}");
+    }
+}
+
+/// Beyond an edge there are more black texels than chance makes, and all to one side.
+#[test]
+fn what_is_black_beside_rare_light_stays_black() {
+    let is_dark = |x: u32| x < 24 || x == 40;
+    for (chance, width) in [(0.1, 24), (0.3, 24), (0.45, 64)] {
+        let field = rare([64, 64], 4, |x| if is_dark(x) { 0.0 } else { chance });
+        let after = denoised(&field);
+        let dark = (0..after.value.len() as u32).filter(|index| index % 64 < width && is_dark(index % 64));
+        let wrong: Vec<u32> = dark.filter(|&index| after.value[index as usize] != Vec3::ZERO).collect();
+        // Further from the light than errors are averaged nothing may happen, and nearer to it next to nothing.
+        assert!(wrong.iter().all(|index| index % 64 > 20), "light far from any");
+        let light: f32 = wrong.iter().map(|&index| after.value[index as usize].x).sum();
+        assert!(light < 0.02 * 64.0 * chance / 16.0, "{chance}: {light} in {} dark texels", wrong.len());
+    }
 }
 
 /// A plane split by a wall that no link crosses, dark behind it.

@@ -2,6 +2,7 @@
 //! between which neighbours it may walk.
 
 use super::super::Field;
+use super::luck;
 use super::window::Window;
 use glam::Vec3;
 
@@ -47,8 +48,15 @@ impl Texels {
             texels.variance[index] = 2.0 * field.stderr[index] * field.stderr[index];
             texels.links[index] = links(field, index);
         }
-        texels.variance = texels.smooth_variance();
+        let window = Window::new(VARIANCE_RADIUS);
+        texels.variance = luck::variance_of_unlucky(&texels, &window);
+        texels.variance = texels.smooth_variance(&window);
         texels
+    }
+
+    /// What was measured.
+    pub(super) fn mean(&self, index: usize) -> Vec3 {
+        0.5 * (self.halves[0][index] + self.halves[1][index])
     }
 
     /// The bit of a step in a set of links.
@@ -68,8 +76,7 @@ impl Texels {
     }
 
     /// Averages each variance with those about it that may be estimates of the same.
-    fn smooth_variance(&self) -> Vec<Vec3> {
-        let window = Window::new(VARIANCE_RADIUS);
+    fn smooth_variance(&self, window: &Window) -> Vec<Vec3> {
         let mut smooth = self.variance.clone();
         for &index in &self.measured {
             let reached = window.reach(self, index);
