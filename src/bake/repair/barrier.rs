@@ -8,7 +8,8 @@
 //! leak is brighter than that.
 //!
 //! Two texels are on different sides if one cannot be reached from the other by links between neighbours within
-//! [`WINDOW`] texels: so the leg of a table, around which one can go, is no wall.
+//! [`WINDOW`] texels: so the leg of a table, around which one can go, is no wall. And there must be covered texels all the
+//! way between them for a wall to stand on: two ends of a bent chart that come close on the page are no neighbours.
 
 use super::dilate::Owners;
 use super::{Field, TexelState};
@@ -109,7 +110,10 @@ fn beyond(field: &Field, here: usize, walk: &mut Walk) -> Vec<usize> {
     if !within(field, here, REACH).any(|index| apart(walk, index)) {
         return Vec::new();
     }
+    let mut ground = Walk::default();
+    ground.cover(field, here, REACH + 1);
     walk.reach(field, here, WINDOW);
+    let apart = |walk: &Walk, index: usize| ground.has_reached(index) && apart(walk, index);
     let mut beyond: Vec<usize> = within(field, here, REACH).filter(|&index| apart(walk, index)).collect();
     // A texel across which the wall runs has a part on this side, from which lookups reach farther.
     let split: Vec<usize> =
@@ -138,6 +142,17 @@ struct Walk {
 impl Walk {
     /// Walks over links, at most `reach` texels away along each axis.
     fn reach(&mut self, field: &Field, from: usize, reach: i32) {
+        self.walk(field, from, reach, |index, step| field.links[index].reaches(step));
+    }
+
+    /// Walks over what the chart covers, whatever stands on it, at most `reach` texels away along each axis.
+    fn cover(&mut self, field: &Field, from: usize, reach: i32) {
+        let is_ground = |index: usize| field.state[index] != TexelState::Empty && field.chart[index] == field.chart[from];
+        self.walk(field, from, reach, |index, step| field.step(index, step).is_some_and(is_ground));
+    }
+
+    /// Walks from neighbour to neighbour, at most `reach` texels away along each axis.
+    fn walk(&mut self, field: &Field, from: usize, reach: i32, may_step: impl Fn(usize, [i32; 2]) -> bool) {
         let width = field.size[0] as i32;
         let place = |index: usize| [index as i32 % width, index as i32 / width];
         let [x, y] = place(from);
@@ -154,7 +169,7 @@ impl Walk {
         let mut next = 0;
         while let Some(&index) = self.reached.get(next) {
             next += 1;
-            for step in NEIGHBOURS.into_iter().filter(|&step| field.links[index].reaches(step)) {
+            for step in NEIGHBOURS.into_iter().filter(|&step| may_step(index, step)) {
                 let Some(neighbour) = field.step(index, step) else { continue };
                 let Some(place) = window(neighbour) else { continue };
                 if !std::mem::replace(&mut seen[place], true) {
@@ -231,6 +246,24 @@ mod tests {
             // Texels two rows from the end and more have no way around within the window.
             assert_eq!(is_held, y + (WINDOW as usize) < 10 || y < 4, "{y}: {}", field.value[16 * y + 8]);
         }
+    }
+
+    /// Where nothing is covered between two parts of a chart no wall stands.
+    #[test]
+    fn two_ends_of_a_bent_chart_are_no_neighbours() {
+        let mut field = walled(0.0, 4.0, 99);
+        for y in 0..16_usize {
+            field.state[16 * y + 8] = TexelState::Empty;
+            field.links[16 * y + 8] = Links::default();
+        }
+        let before = field.clone();
+        stop_light_at_walls(&mut field);
+        assert_eq!(field.value, before.value);
+        // A wall as wide as a texel is covered, and hidden.
+        let mut field = before;
+        (0..16_usize).for_each(|y| field.state[16 * y + 8] = TexelState::Hidden);
+        stop_light_at_walls(&mut field);
+        assert_eq!(field.value[16 * 8 + 9], white(0.0));
     }
 
     #[test]
