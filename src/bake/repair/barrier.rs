@@ -147,7 +147,8 @@ impl Walk {
 
     /// Walks over what the chart covers, whatever stands on it, at most `reach` texels away along each axis.
     fn cover(&mut self, field: &Field, from: usize, reach: i32) {
-        let is_ground = |index: usize| field.state[index] != TexelState::Empty && field.chart[index] == field.chart[from];
+        let is_ground =
+            |index: usize| field.state[index] != TexelState::Empty && field.chart[index] == field.chart[from];
         self.walk(field, from, reach, |index, step| field.step(index, step).is_some_and(is_ground));
     }
 

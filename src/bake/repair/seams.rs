@@ -34,6 +34,10 @@ const OFF_CENTRE: f64 = 0.25;
 /// How far apart both sides of a seam may be, in the sum of their errors, to be taken for one.
 const EXPLAINED: f64 = 8.0;
 
+/// A texel that no lookup at a joint reads by this share is moved less, as if it were more certain: it would have to
+/// move by many times of what it does for the joint.
+const FULL_SHARE: f64 = 0.25;
+
 /// How far a measured texel may be moved, in its error.
 const REACH: f64 = 8.0;
 
@@ -188,6 +192,7 @@ impl System {
         let local_number = |unknown: u32| group.unknowns.partition_point(|&known| known < unknown) as u32;
         let mut rows = Rows::default();
         let mut locals = vec![(0.0, 0.0); group.unknowns.len()];
+        let mut shares = vec![0.0_f64; group.unknowns.len()];
         for &sample in &group.samples {
             let numbers: Vec<u32> = self.of(sample as usize).iter().copied().map(local_number).collect();
             let sample = &samples[sample as usize];
@@ -208,11 +213,13 @@ impl System {
                     let (sum, weights) = &mut locals[number as usize];
                     *sum += weight * weight * row.local();
                     *weights += weight * weight;
+                    let share = &mut shares[number as usize];
+                    *share = share.max(weight.abs());
                 }
                 rows.push([row.difference, row.mean], sample.floor, entries());
             }
         }
-        let unknown = |(&number, (sum, weights)): (&u32, (f64, f64))| {
+        let unknown = |((&number, (sum, weights)), share): ((&u32, (f64, f64)), f64)| {
             let (page, texel) = self.places[number as usize];
             let (field, texel) = (&fields[page as usize], texel as usize);
             let local: f64 = sum / weights;
@@ -222,10 +229,11 @@ impl System {
                 Some(source) => measured(source).clamp(FILLED_ERROR, MOST_ERROR),
                 None => FILLED_ERROR,
             };
+            let error = error * (share / FULL_SHARE).min(1.0);
             let reach = if field.is_measured(texel) { REACH * error * local } else { f64::INFINITY };
             Unknown { value: field.value[texel].as_dvec3(), error: error * local, reach }
         };
-        let unknowns = group.unknowns.iter().zip(locals).map(unknown).collect();
+        let unknowns = group.unknowns.iter().zip(locals).zip(shares).map(unknown).collect();
         (rows, unknowns)
     }
 }

@@ -212,7 +212,6 @@ impl Row {
 }
 
 impl<'a> Sampling<'a> {
-
     /// One side of a joint, at a place in parts of its edge.
     fn side(&self, border: &'a Border, at: f64) -> Option<Side<'a>> {
         let rectangle = &self.place.atlas.charts[border.receiver as usize];

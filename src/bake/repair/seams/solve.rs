@@ -18,7 +18,7 @@ use glam::DVec3;
 const UNSEEN: f64 = 4e-3;
 
 /// How far a pair can pull its texels, in their errors.
-const STRENGTH: f64 = 0.5;
+const STRENGTH: f64 = 30.0;
 
 /// A pair that is off by less than this more than what is unseen, in that, is done.
 const CLOSE: f64 = 0.1;
@@ -72,7 +72,14 @@ impl Rows {
         floor: f64,
         entries: impl Iterator<Item = (u32, f64)>,
     ) {
-        self.entries.extend(entries.map(|(unknown, weight)| (unknown, weight as f32)));
+        let begin = self.entries.len();
+        for (unknown, weight) in entries {
+            // Where a chart is slit both lookups may read the same texel.
+            match self.entries[begin..].iter_mut().find(|(known, _)| *known == unknown) {
+                Some((_, known)) => *known += weight as f32,
+                None => self.entries.push((unknown, weight as f32)),
+            }
+        }
         self.ends.push(self.entries.len() as u32);
         self.difference.push(difference);
         self.mean.push(mean);
