@@ -145,7 +145,7 @@ fn no_jump_on_an_unwrapped_capsule_and_cylinder() {
 
 #[test]
 fn no_jump_on_an_unwrapped_bent_pipe() {
-    unwrapped("pipe", &pipe(), 192.0);
+    unwrapped("pipe", &pipe(), 256.0);
 }
 
 /// Its own shadow is sharpest where the tube is nearest, and there charts meet askew.

@@ -36,7 +36,7 @@ const EXPLAINED: f64 = 8.0;
 
 /// A texel that no lookup at a joint reads by this share is moved less, as if it were more certain: it would have to
 /// move by many times of what it does for the joint.
-const FULL_SHARE: f64 = 0.25;
+const FULL_SHARE: f64 = 0.08;
 
 /// How far a measured texel may be moved, in its error.
 const REACH: f64 = 8.0;
