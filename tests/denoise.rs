@@ -109,8 +109,9 @@ fn round_things_under_many_lamps() {
 #[test]
 #[ignore = "makes the references"]
 fn make_references() {
-    for case in scenes::all() {
-        let samples = if case.name == "cornell" { LONGER } else { LONG };
+    let only = std::env::var("DENOISE_ONLY").ok();
+    for case in scenes::all().into_iter().filter(|case| only.as_deref().is_none_or(|only| only == case.name)) {
+        let samples = if case.name == "sunlit" { LONG } else { LONGER };
         let lightmap = bake(&case, samples, Denoise::Off);
         let page: &Page = &lightmap.pages[0];
         reference::save(case.name, page);

@@ -7,7 +7,7 @@ use bevy_kiln::artefact::StableId;
 use bevy_kiln::scene::{
     DirectionalLight, Indices, Instance, Light, LightmapRequest, Material, Mesh, PointLight, Scene, Topology,
 };
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Affine3A, BVec3, Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
 /// Empty texels between two cells.
@@ -66,7 +66,8 @@ pub fn sunlit() -> Case {
     finished("sunlit", scene, builder.size)
 }
 
-/// A ball, a pillar and a block in a corner, under many small lamps of different sizes and colours.
+/// A ball, a pillar and a block in a corner, under many small lamps of different sizes and colours. The pillar has a
+/// lid, or its inside would be a lit room, and the floor on both sides of its wall no test of a denoiser.
 pub fn lamps() -> Case {
     let mut builder = Builder::new(144, 18.0);
     builder.quad("floor", Vec3::ZERO, [Vec3::Z * 3.0, Vec3::X * 3.0], grey(0.6));
@@ -75,6 +76,7 @@ pub fn lamps() -> Case {
     builder.quad("side", Vec3::ZERO, [Vec3::Y * 2.0, Vec3::Z * 3.0], red);
     builder.ball("ball", Vec3::new(0.9, 0.45, 1.2), 0.45);
     builder.pillar("pillar", Vec3::new(2.1, 0.0, 0.8), 0.25, 1.0);
+    builder.lid("lid", Vec3::new(1.8, 1.0, 0.5), Vec3::new(2.4, 1.02, 1.1));
     builder.block("block", Vec3::new(1.6, 0.0, 1.9), Vec3::new(2.2, 0.5, 2.5), grey(0.5));
     let mut scene = builder.scene;
     for lamp in 0..48_u8 {
@@ -175,6 +177,18 @@ impl Builder {
         });
     }
 
+    /// A box without a lightmap.
+    fn lid(&mut self, name: &str, low: Vec3, high: Vec3) {
+        let corner = |index: u8| Vec3::select(BVec3::new(index & 1 != 0, index & 2 != 0, index & 4 != 0), high, low);
+        let sides = [[0, 4, 6, 2], [1, 3, 7, 5], [2, 6, 7, 3], [0, 1, 5, 4], [0, 2, 3, 1], [4, 5, 7, 6]];
+        let indices = sides.iter().flat_map(|[a, b, c, d]| [a, b, c, a, c, d]).copied().collect();
+        let positions = (0..8).map(corner).collect();
+        self.mesh(name, grey(0.5), Shape { positions, indices, ..Shape::default() });
+        if let Some(lid) = self.scene.instances.last_mut() {
+            lid.lightmap = None;
+        }
+    }
+
     fn revolved(
         &mut self,
         name: &str,
@@ -214,7 +228,7 @@ impl Builder {
             indices: Indices::U32(shape.indices),
             positions: shape.positions,
             normals: shape.normals,
-            uv1: Some(shape.uv1),
+            uv1: (!shape.uv1.is_empty()).then_some(shape.uv1),
             ..Mesh::default()
         });
     }
