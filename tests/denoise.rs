@@ -19,7 +19,7 @@ use scenes::Case;
 /// Samples per texel of the references: their errors are four times below the least that they judge.
 const LONG: u32 = 8192;
 
-/// And those of the Cornell box, which is denoised best.
+/// And those of the scenes that are denoised best.
 const LONGER: u32 = 16384;
 
 fn bake(case: &Case, samples_per_texel: u32, denoise: Denoise) -> Lightmap {
@@ -105,7 +105,8 @@ fn round_things_under_many_lamps() {
     assert_case(&scenes::lamps());
 }
 
-/// Minutes per scene: `cargo test --no-default-features --features bake --test denoise -- --ignored`.
+/// Minutes per scene: `cargo test --no-default-features --features bake --test denoise -- --ignored make_references`,
+/// with `DENOISE_ONLY` in the environment for one of them by name.
 #[test]
 #[ignore = "makes the references"]
 fn make_references() {

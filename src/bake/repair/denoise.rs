@@ -9,7 +9,7 @@
 //!
 //! It is done twice. A first, small window finds its likes in the measurement; a second, larger one compares the fits
 //! of the first, which are less noisy and have slopes, so that texels of one slope are alike however far down they lie.
-//! Which of the two is nearer to the truth is estimated, and whether a plane would be nearer still (`select`). A texel that light only missed by chance counts as
+//! Which of the two is nearer to the truth is estimated (`select`). A texel that light only missed by chance counts as
 //! noisy like those about it (`luck`).
 //!
 //! What it promises: a window is walked over links, so that nothing comes from another chart, from behind a wall, or
@@ -40,7 +40,7 @@ use texels::Texels;
 use window::{Reached, Window};
 
 /// How far a texel looks for others like it, first and then [texels].
-const RADII: [f32; 2] = [9.0, 12.0];
+const RADII: [f32; 2] = [7.5, 10.0];
 
 /// How far a texel may be moved, in standard errors.
 const REACH: f32 = 4.0;
@@ -75,8 +75,6 @@ struct Level {
     own: [Fitted; 2],
     /// Each half by the other half's weights.
     crossed: [Fitted; 2],
-    /// The same as planes.
-    flat: [Fitted; 2],
     /// Least and most of what it is made of.
     range: [Vec3; 2],
 }
@@ -145,13 +143,8 @@ fn filter(texels: &Texels, looks: &[Looks<'_>; 2], reached: &[Reached], radius: 
             }
         }
     }
-    let [by_first, by_second] = sums.map(|sums| sums.fitted(radius));
-    Level {
-        own: [by_first.curved[0], by_second.curved[1]],
-        crossed: [by_second.curved[0], by_first.curved[1]],
-        flat: [by_second.flat[0], by_first.flat[1]],
-        range,
-    }
+    let [[first, second_by_first], [first_by_second, second]] = sums.map(|sums| sums.fitted(radius));
+    Level { own: [first, second], crossed: [first_by_second, second_by_first], range }
 }
 
 fn widest([low, high]: [Vec3; 2], [other_low, other_high]: [Vec3; 2]) -> [Vec3; 2] {

@@ -5,8 +5,7 @@
 //! goes with that rest, and noise as far as it does not. What goes together by noise alone is known, by the share of
 //! each measurement in its own fit (Stein's unbiased estimate of the error, 1981; for denoising Li, Wu and Chuang
 //! 2012, Rousselle et al. 2012), and is taken off first. The share of the difference that is light is one number for
-//! all channels of a surrounding. In the same way a share of the plane through the small window is then blended in: it
-//! has the least noise where a fit sees one side only, at the border of a chart.
+//! all channels of a surrounding.
 //!
 //! Owns the choice; knows nothing of how the fits are made.
 
@@ -14,14 +13,14 @@ use super::fit::Fitted;
 use super::texels::Texels;
 use super::window::Window;
 use super::{Level, live, root};
+use crate::bake::BakeError;
 use crate::bake::workers::Workers;
-use crate::bake::{BakeError, CancelToken};
 use glam::Vec3;
 
 /// Over which surrounding a share is estimated [texels].
-const RADIUS: f32 = 12.0;
+const RADIUS: f32 = 10.0;
 
-/// What a share must exceed, in its standard errors: another candidate has to show that it is needed.
+/// What a share must exceed, in its standard errors: the small window has to show that it is needed.
 const LEAST: f32 = 0.5;
 
 /// The channels of one path come together: their errors are as good as one.
@@ -47,14 +46,10 @@ impl Candidate {
         }
     }
 
-    /// This with a share of another. Residuals are mixed as if both had the same error: they are made of the same
-    /// texels.
-    fn blended(self, other: Self, share: f32) -> Self {
-        Self {
-            value: self.value.lerp(other.value, share),
-            residual: self.residual.lerp(other.residual, share),
-            own: self.own + share * (other.own - self.own),
-        }
+    /// The value and the residual with a share of another. Residuals are mixed as if both had the same error: they are
+    /// made of the same texels.
+    fn blended(self, other: Self, share: f32) -> [Vec3; 2] {
+        [self.value.lerp(other.value, share), self.residual.lerp(other.residual, share)]
     }
 }
 
@@ -64,39 +59,31 @@ pub(super) fn best(
     [small, large]: [&[Level]; 2],
     workers: &Workers<'_>,
 ) -> Result<Vec<[Vec3; 2]>, BakeError> {
-    let candidates = |levels: &[Level], halves: fn(&Level) -> [Fitted; 2]| {
+    let candidates = |levels: &[Level]| {
         let mut candidates = vec![Candidate::default(); texels.links.len()];
         for (&index, level) in texels.measured.iter().zip(levels) {
-            candidates[index] = Candidate::of_halves(halves(level));
+            candidates[index] = Candidate::of_halves(level.crossed);
         }
         candidates
     };
+    let choice = Choice { texels, small: candidates(small), large: candidates(large) };
     let window = Window::new(RADIUS);
-    let mut best = candidates(large, |level| level.crossed);
-    for other in [candidates(small, |level| level.crossed), candidates(small, |level| level.flat)] {
-        let choice = Choice { texels, best: &best, other: &other };
-        let blend = |&index: &usize, cancel: &CancelToken| {
-            live(cancel)?;
-            Some(best[index].blended(other[index], choice.share_of_other(index, &window)))
-        };
-        let blends = workers.gather_quietly(&texels.measured, blend)?;
-        for (&index, blended) in texels.measured.iter().zip(blends) {
-            best[index] = blended;
-        }
-    }
-    Ok(texels.measured.iter().map(|&index| [best[index].value, best[index].residual]).collect())
+    workers.gather_quietly(&texels.measured, |&index, cancel| {
+        live(cancel)?;
+        Some(choice.large[index].blended(choice.small[index], choice.share_of_small(index, &window)))
+    })
 }
 
 /// Between two candidates of each texel.
 struct Choice<'a> {
     texels: &'a Texels,
-    best: &'a [Candidate],
-    other: &'a [Candidate],
+    small: Vec<Candidate>,
+    large: Vec<Candidate>,
 }
 
 impl Choice<'_> {
-    /// The share of the other candidate that is best about a texel, in [0, 1].
-    fn share_of_other(&self, index: usize, window: &Window) -> f32 {
+    /// The share of the small window that is best about a texel, in [0, 1].
+    fn share_of_small(&self, index: usize, window: &Window) -> f32 {
         let texels = self.texels;
         let is_whole = |index: usize| texels.links[index] == u8::MAX;
         let (mut gain, mut squares, mut noise) = (0.0, 0.0, 0.0);
@@ -107,14 +94,14 @@ impl Choice<'_> {
                 continue;
             }
             let near = 1.0 - reached.squared_distance() / (RADIUS * RADIUS);
-            let [best, other] = [self.best[there], self.other[there]];
+            let [large, small] = [self.large[there], self.small[there]];
             // All in standard errors of the measurement.
             let scale = root(0.5 * texels.variance[there]);
             let is_measured = scale.cmpgt(Vec3::ZERO);
             let in_errors = |value: Vec3| Vec3::select(is_measured, value / scale, Vec3::ZERO);
-            let difference = in_errors(other.value - best.value);
-            let rest = in_errors(texels.mean(there) - best.value);
-            let by_noise = Vec3::select(is_measured, Vec3::splat(other.own - best.own), Vec3::ZERO);
+            let difference = in_errors(small.value - large.value);
+            let rest = in_errors(texels.mean(there) - large.value);
+            let by_noise = Vec3::select(is_measured, Vec3::splat(small.own - large.own), Vec3::ZERO);
             gain += near * (difference * rest - by_noise).element_sum();
             squares += near * difference.length_squared();
             noise += near * near * difference.length_squared();
