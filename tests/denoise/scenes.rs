@@ -66,7 +66,8 @@ pub fn sunlit() -> Case {
     finished("sunlit", scene, builder.size)
 }
 
-/// A ball, a pillar and a block in a corner, under many small lamps of different sizes and colours.
+/// A ball, a pillar and a block in a corner, under many small lamps of different sizes and colours. The pillar has a
+/// lid, or its inside would be a lit room, and the floor on both sides of its wall no test of a denoiser.
 pub fn lamps() -> Case {
     let mut builder = Builder::new(144, 18.0);
     builder.quad("floor", Vec3::ZERO, [Vec3::Z * 3.0, Vec3::X * 3.0], grey(0.6));
@@ -75,6 +76,7 @@ pub fn lamps() -> Case {
     builder.quad("side", Vec3::ZERO, [Vec3::Y * 2.0, Vec3::Z * 3.0], red);
     builder.ball("ball", Vec3::new(0.9, 0.45, 1.2), 0.45);
     builder.pillar("pillar", Vec3::new(2.1, 0.0, 0.8), 0.25, 1.0);
+    builder.lid("lid", Vec3::new(2.1, 1.0, 0.8), 0.25);
     builder.block("block", Vec3::new(1.6, 0.0, 1.9), Vec3::new(2.2, 0.5, 2.5), grey(0.5));
     let mut scene = builder.scene;
     for lamp in 0..48_u8 {
@@ -175,6 +177,19 @@ impl Builder {
         });
     }
 
+    /// The end of a pillar, without a lightmap. No wider than the pillar: it is to cast no shadow of its own.
+    fn lid(&mut self, name: &str, centre: Vec3, radius: f32) {
+        const SIDES: u32 = 48;
+        let turn = |side: u32| TAU * side as f32 / SIDES as f32;
+        let rim = (0..SIDES).map(|side| centre + radius * Vec3::new(turn(side).sin(), 0.0, turn(side).cos()));
+        let positions = std::iter::once(centre).chain(rim).collect();
+        let indices = (0..SIDES).flat_map(|side| [0, 1 + side, 1 + (side + 1) % SIDES]).collect();
+        self.mesh(name, grey(0.5), Shape { positions, indices, ..Shape::default() });
+        if let Some(lid) = self.scene.instances.last_mut() {
+            lid.lightmap = None;
+        }
+    }
+
     fn revolved(
         &mut self,
         name: &str,
@@ -214,7 +229,7 @@ impl Builder {
             indices: Indices::U32(shape.indices),
             positions: shape.positions,
             normals: shape.normals,
-            uv1: Some(shape.uv1),
+            uv1: (!shape.uv1.is_empty()).then_some(shape.uv1),
             ..Mesh::default()
         });
     }

@@ -40,7 +40,7 @@ use texels::Texels;
 use window::{Reached, Window};
 
 /// How far a texel looks for others like it, first and then [texels].
-const RADII: [f32; 2] = [6.5, 10.0];
+const RADII: [f32; 2] = [7.5, 10.0];
 
 /// How far a texel may be moved, in standard errors.
 const REACH: f32 = 4.0;

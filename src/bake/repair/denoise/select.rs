@@ -18,7 +18,7 @@ use crate::bake::workers::Workers;
 use glam::Vec3;
 
 /// Over which surrounding a share is estimated [texels].
-const RADIUS: f32 = 7.0;
+const RADIUS: f32 = 10.0;
 
 /// What a share must exceed, in its standard errors: the small window has to show that it is needed.
 const LEAST: f32 = 0.5;
