@@ -23,13 +23,13 @@ pub struct Held {
 pub const HELD: [Held; 3] = [
     Held {
         name: "cornell",
-        hash: 0x94be_482d_bb99_6db4,
+        hash: 0x9b05_ee46_bb46_d1a5,
         scene: || glb::load("cornell"),
         density: 1.0,
         layout: Layout::Shared { size: 32 },
     },
-    Held { name: "garden", hash: 0x6280_a58b_499f_37fc, scene: garden, density: 5.0, layout: Layout::Packed },
-    Held { name: "vitrine", hash: 0x8040_36d3_db9c_1550, scene: vitrine, density: 4.0, layout: Layout::Packed },
+    Held { name: "garden", hash: 0xa797_0bef_90a9_464a, scene: garden, density: 5.0, layout: Layout::Packed },
+    Held { name: "vitrine", hash: 0x294e_66e9_bc38_a22d, scene: vitrine, density: 4.0, layout: Layout::Packed },
 ];
 
 impl Held {

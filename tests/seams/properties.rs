@@ -1,9 +1,9 @@
 //! What no scene may break: floors of tiles by chance.
 
 use crate::common::scenes::{SceneBuilder, grey};
-use crate::judge::{Edges, TARGET, bake, on_threads, pairs, settings, worst_jump};
+use crate::judge::{Edges, Look, TARGET, bake, on_threads, pairs, settings};
 use bevy_kiln::artefact::StableId;
-use bevy_kiln::bake::{BakeSettings, Denoise, Lightmap, Page, TexelState};
+use bevy_kiln::bake::{BakeSettings, Denoise, Filtering, Lightmap, Page, TexelState};
 use bevy_kiln::scene::{Light, PointLight, Scene};
 use glam::Vec3;
 use proptest::prelude::*;
@@ -113,8 +113,15 @@ proptest! {
         let scene = floor.scene(100.0);
         let lightmap = bake(&scene, &undenoised(64));
         prop_assert_eq!(touched_inside(&lightmap), 0);
-        let jump = worst_jump(&scene, &lightmap, &pairs(&scene, Edges::Smooth));
-        prop_assert!(jump <= TARGET, "{}", jump);
+        // The block's shadow is sharper than these texels: at its dark foot a jump may be left that is small against
+        // the light beside it (see `what_texels_do_not_resolve_is_left_and_small`).
+        let pairs = pairs(&scene, Edges::Smooth);
+        for filtering in [Filtering::Bilinear, Filtering::Bicubic] {
+            let look = Look::new(&scene, &lightmap, filtering);
+            let (jump, over_brightest) = (look.worst_jump(&pairs), look.worst_jump_over_brightest(&pairs));
+            let is_small = jump <= 2.0 * TARGET && over_brightest <= 3e-3;
+            prop_assert!(jump <= TARGET || is_small, "{} {}", jump, over_brightest);
+        }
         for page in &lightmap.pages {
             prop_assert!(page.radiance.iter().all(|value| value.is_finite() && value.min_element() >= 0.0));
         }
