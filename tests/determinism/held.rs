@@ -29,7 +29,7 @@ pub const HELD: [Held; 3] = [
         layout: Layout::Shared { size: 32 },
     },
     Held { name: "garden", hash: 0xa797_0bef_90a9_464a, scene: garden, density: 5.0, layout: Layout::Packed },
-    Held { name: "vitrine", hash: 0x294e_66e9_bc38_a22d, scene: vitrine, density: 4.0, layout: Layout::Packed },
+    Held { name: "vitrine", hash: 0xadec_a81c_a2cd_ccd0, scene: vitrine, density: 4.0, layout: Layout::Packed },
 ];
 
 impl Held {
