@@ -113,14 +113,12 @@ proptest! {
         let scene = floor.scene(100.0);
         let lightmap = bake(&scene, &undenoised(64));
         prop_assert_eq!(touched_inside(&lightmap), 0);
-        // The block's shadow is sharper than these texels: at its dark foot a jump may be left that is small against
-        // the light beside it (see `what_texels_do_not_resolve_is_left_and_small`).
+        // The block's shadow is sharper than these texels: at its dark foot jumps may be left that are small against the
+        // light beside them (see `what_texels_do_not_resolve_is_left_and_small`), so they are judged by that.
         let pairs = pairs(&scene, Edges::Smooth);
         for filtering in [Filtering::Bilinear, Filtering::Bicubic] {
-            let look = Look::new(&scene, &lightmap, filtering);
-            let (jump, over_brightest) = (look.worst_jump(&pairs), look.worst_jump_over_brightest(&pairs));
-            let is_small = jump <= 2.5 * TARGET && over_brightest <= 0.01;
-            prop_assert!(jump <= TARGET || is_small, "{} {}", jump, over_brightest);
+            let worst = Look::new(&scene, &lightmap, filtering).worst_jump_over_brightest(&pairs);
+            prop_assert!(worst <= TARGET, "{}", worst);
         }
         for page in &lightmap.pages {
             prop_assert!(page.radiance.iter().all(|value| value.is_finite() && value.min_element() >= 0.0));
