@@ -1,9 +1,9 @@
 //! What no scene may break: floors of tiles by chance.
 
 use crate::common::scenes::{SceneBuilder, grey};
-use crate::judge::{Edges, Look, TARGET, bake, on_threads, pairs, settings};
+use crate::judge::{Edges, TARGET, bake, on_threads, pairs, settings, worst_jump};
 use bevy_kiln::artefact::StableId;
-use bevy_kiln::bake::{BakeSettings, Denoise, Filtering, Lightmap, Page, TexelState};
+use bevy_kiln::bake::{BakeSettings, Denoise, Lightmap, Page, TexelState};
 use bevy_kiln::scene::{Light, PointLight, Scene};
 use glam::Vec3;
 use proptest::prelude::*;
@@ -109,18 +109,13 @@ proptest! {
 
     /// Seams close, and nothing farther in is touched.
     #[test]
-    #[ignore = "misses its target: on some floors a jump of 2 % of the brightest light at a seam is left, undenoised"]
+    #[ignore = "misses its target: undenoised floors keep jumps of up to 6 % of the local value, or 2 % of the brightest light at a seam"]
     fn seams_close_and_the_rest_is_what_was_measured(floor in floors(2..=8)) {
         let scene = floor.scene(100.0);
         let lightmap = bake(&scene, &undenoised(64));
         prop_assert_eq!(touched_inside(&lightmap), 0);
-        // The block's shadow is sharper than these texels: at its dark foot jumps may be left that are small against the
-        // light beside them (see `what_texels_do_not_resolve_is_left_and_small`), so they are judged by that.
-        let pairs = pairs(&scene, Edges::Smooth);
-        for filtering in [Filtering::Bilinear, Filtering::Bicubic] {
-            let worst = Look::new(&scene, &lightmap, filtering).worst_jump_over_brightest(&pairs);
-            prop_assert!(worst <= TARGET, "{}", worst);
-        }
+        let jump = worst_jump(&scene, &lightmap, &pairs(&scene, Edges::Smooth));
+        prop_assert!(jump <= TARGET, "{}", jump);
         for page in &lightmap.pages {
             prop_assert!(page.radiance.iter().all(|value| value.is_finite() && value.min_element() >= 0.0));
         }

@@ -3,7 +3,8 @@
 //!
 //! 1. `borders` finds the edges at which charts end and the stretches along which two of them meet (`tree`);
 //! 2. `samples` puts points along them, and leaves out where the surface is not meant to be one;
-//! 3. `solve` moves the texels of each group of joints that share any.
+//! 3. `across` gives texels filled in beside a joint what the other chart shows there;
+//! 4. `solve` moves the texels of each group of joints that share any.
 
 mod across;
 mod borders;
