@@ -109,23 +109,12 @@ proptest! {
 
     /// Seams close, and nothing farther in is touched.
     #[test]
-    #[ignore = "misses its target: undenoised floors keep jumps of up to 6 % of the local value, or 2 % of the brightest light at a seam"]
     fn seams_close_and_the_rest_is_what_was_measured(floor in floors(2..=8)) {
         let scene = floor.scene(100.0);
         let lightmap = bake(&scene, &undenoised(64));
         prop_assert_eq!(touched_inside(&lightmap), 0);
         let jump = worst_jump(&scene, &lightmap, &pairs(&scene, Edges::Smooth));
         prop_assert!(jump <= TARGET, "{}", jump);
-        for page in &lightmap.pages {
-            prop_assert!(page.radiance.iter().all(|value| value.is_finite() && value.min_element() >= 0.0));
-        }
-    }
-
-    /// Whatever becomes of the seams, nothing farther in is touched.
-    #[test]
-    fn the_rest_is_what_was_measured(floor in floors(2..=8)) {
-        let lightmap = bake(&floor.scene(100.0), &undenoised(64));
-        prop_assert_eq!(touched_inside(&lightmap), 0);
         for page in &lightmap.pages {
             prop_assert!(page.radiance.iter().all(|value| value.is_finite() && value.min_element() >= 0.0));
         }

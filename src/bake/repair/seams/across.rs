@@ -16,6 +16,9 @@ use std::collections::BTreeMap;
 /// How far off the edge a texel's centre may lie inside it, for a texel that is none of the chart's [texels].
 const INSIDE: f64 = 0.1;
 
+/// A texel with less than this weight is not read: where the texels of two charts are in line it is there by rounding.
+const LEAST: f64 = 1e-3;
+
 /// What was read across a joint for one texel.
 struct Read {
     /// Squared distance from the joint's point [texels²].
@@ -56,12 +59,13 @@ fn across(field: &Field, side: &Reading, other: &Reading, way: DVec2) -> Option<
         return None;
     }
     let point = other.place + other.metres.inverse() * DVec2::new(along, -inwards);
-    let mut value = DVec3::ZERO;
-    for (texel, weight) in Filtering::Bilinear.taps(field.size, point).iter().filter(|(_, weight)| *weight > 0.0) {
+    let (mut value, mut weights) = (DVec3::ZERO, 0.0);
+    for (texel, weight) in Filtering::Bilinear.taps(field.size, point).iter().filter(|(_, weight)| *weight > LEAST) {
         let is_there = field.is_measured(texel) && other.moving.contains(&(texel as u32));
         value += is_there.then(|| weight * field.value[texel].as_dvec3())?;
+        weights += weight;
     }
-    Some(value)
+    Some(value / weights)
 }
 
 /// Where a texel's centre is [texels].
