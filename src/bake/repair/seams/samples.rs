@@ -43,6 +43,10 @@ const LEAST_LOCAL: f64 = 0.02;
 /// Lookups that lie closer on the same page are the same [texels].
 const SAME_PLACE: f64 = 1e-3;
 
+/// What lies within this of a lookup may be read for the other side [texels]: what fills its second ring there, and a
+/// texel more for what is read between two.
+const AROUND: f64 = 3.0;
+
 /// A texel in a row of equations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
@@ -75,6 +79,15 @@ pub(super) struct Reading {
     pub(super) metres: DMat2,
     /// The texels that lookups there read and that may move.
     pub(super) moving: Vec<u32>,
+    /// Those around them that hang together with them.
+    pub(super) around: Vec<u32>,
+}
+
+impl Reading {
+    /// Whether a texel hangs together with the joint.
+    pub(super) fn hangs_together(&self, texel: u32) -> bool {
+        self.moving.contains(&texel) || self.around.contains(&texel)
+    }
 }
 
 /// A point of a joint.
@@ -174,7 +187,8 @@ impl<'a> Sampling<'a> {
             let [right, down] = side.steps;
             let axes = [along.normalize(), side.inwards.normalize()];
             let metres = DMat2::from_cols_array_2d(&[right, down].map(|step| axes.map(|axis| axis.dot(step))));
-            Some(Reading { page: side.page, place: side.place, metres, moving: self.moving(side)? })
+            let [moving, around] = self.texels(side)?;
+            Some(Reading { page: side.page, place: side.place, metres, moving, around })
         };
         Sample::new(joint, [reading(a)?, reading(b)?], self.fields)
     }
@@ -260,9 +274,9 @@ impl<'a> Sampling<'a> {
         })
     }
 
-    /// The texels around a side that may move: those that hang together with the place beside the joint. `None` where
-    /// the nearest is hidden, or of another room.
-    fn moving(&self, side: &Side<'_>) -> Option<Vec<u32>> {
+    /// The texels around a side that hang together with the place beside the joint: those that lookups read, and more
+    /// around them. `None` where the nearest is hidden, or of another room.
+    fn texels(&self, side: &Side<'_>) -> Option<[Vec<u32>; 2]> {
         let field = &self.fields[side.page as usize];
         let owners = &self.owners[side.page as usize];
         let chart = self.charts.of(side.border.receiver, side.border.triangle);
@@ -280,7 +294,12 @@ impl<'a> Sampling<'a> {
         }
         let site = &self.place.sites[self.sites[side.page as usize][nearest] as usize];
         let is_open = self.place.tracer.is_open_between(&site.footing.anchor, &side.beside);
-        is_open.then(|| flood(field, owners, &taps, nearest))
+        is_open.then(|| {
+            let moving = flood(field, owners, &texels().collect::<Vec<_>>(), nearest);
+            let mut around = flood(field, owners, &near(side.place, field.size), nearest);
+            around.retain(|texel| !moving.contains(texel));
+            [moving, around]
+        })
     }
 }
 
@@ -323,30 +342,37 @@ fn places(a: &Border, b: &Border, joint: &Joint) -> Vec<f64> {
     ends
 }
 
-/// The texels of a lookup that hang together with one of them: measured ones by links, and what was filled from those.
-fn flood(field: &Field, owners: &Owners, taps: &Taps, from: usize) -> Vec<u32> {
-    let chart = field.chart[from];
-    let is_read = |texel: usize| taps.iter().any(|(read, _)| read == texel);
-    let mut moving = vec![from];
+/// Those of a few texels that hang together with one of them: measured ones by links, and what was filled from those.
+fn flood(field: &Field, owners: &Owners, few: &[usize], from: usize) -> Vec<u32> {
+    let mut found = vec![from];
     let mut next = 0;
-    while let Some(&texel) = moving.get(next) {
+    while let Some(&texel) = found.get(next) {
         next += 1;
         for step in (-1..=1).flat_map(|y| (-1..=1).map(move |x| [x, y])) {
             let linked = field.links[texel].reaches(step).then(|| field.step(texel, step)).flatten();
-            let linked = linked.filter(|&other| field.is_measured(other) && is_read(other));
-            if let Some(other) = linked.filter(|other| !moving.contains(other)) {
-                moving.push(other);
+            let linked = linked.filter(|other| field.is_measured(*other) && few.contains(other));
+            if let Some(other) = linked.filter(|other| !found.contains(other)) {
+                found.push(other);
             }
         }
     }
-    let measured = moving.len();
-    for (texel, _) in taps.iter() {
-        let Some(source) = owners.source(texel).filter(|_| !field.is_measured(texel)) else { continue };
-        // A source that is not read lies farther in than what is; it may be anyone's.
-        let is_ours = field.chart[source] == chart && (moving[..measured].contains(&source) || !is_read(source));
-        if is_ours && !moving.contains(&texel) {
-            moving.push(texel);
+    let measured = found.len();
+    for &texel in few.iter().filter(|&&texel| !field.is_measured(texel)) {
+        let Some(source) = owners.source(texel) else { continue };
+        // A source that is none of the few lies farther in than those; it may be anyone's.
+        let is_ours =
+            field.chart[source] == field.chart[from] && (found[..measured].contains(&source) || !few.contains(&source));
+        if is_ours && !found.contains(&texel) {
+            found.push(texel);
         }
     }
-    moving.into_iter().map(|texel| texel as u32).collect()
+    found.into_iter().map(|texel| texel as u32).collect()
+}
+
+/// The texels whose centres lie near a place.
+fn near(place: DVec2, [width, height]: [u32; 2]) -> Vec<usize> {
+    let range =
+        |at: f64, size: u32| (at - AROUND).ceil().max(0.0) as u32..((at + AROUND).floor().max(0.0) as u32).min(size);
+    let rows = range(place.y, height);
+    rows.flat_map(|row| range(place.x, width).map(move |column| (row * width + column) as usize)).collect()
 }
