@@ -97,7 +97,7 @@ fn bits(lightmap: &Lightmap) -> Vec<u32> {
 
 fn config() -> ProptestConfig {
     ProptestConfig {
-        cases: 12,
+        cases: 24,
         failure_persistence: None,
         rng_seed: RngSeed::Fixed(0x7365_616d),
         ..ProptestConfig::default()

@@ -41,57 +41,99 @@ struct Read {
 
 /// Reads filled texels across the joints, each at the nearest point.
 pub(super) fn read_across(fields: &mut [Field], samples: &[Sample]) {
-    let mut known = BTreeSet::new();
+    let mut reader = Reader { beyond: beyond(fields, samples), known: BTreeSet::new() };
     for pass in [Pass::Measured, Pass::Read, Pass::CarriedOn] {
-        for (place, Read { value, .. }) in read(fields, samples, &known, pass) {
+        for (place, Read { value, .. }) in reader.read(fields, samples, pass) {
             let (page, texel) = place;
             fields[page as usize].value[texel as usize] = value.as_vec3();
-            known.insert(place);
+            reader.known.insert(place);
         }
     }
 }
 
-/// One pass, over all that is not known yet.
-fn read(fields: &[Field], samples: &[Sample], known: &BTreeSet<Place>, pass: Pass) -> BTreeMap<Place, Read> {
-    let mut found: BTreeMap<Place, Read> = BTreeMap::new();
-    let is_known =
-        |page: u32, texel: u32| fields[page as usize].is_measured(texel as usize) || known.contains(&(page, texel));
-    for sample in samples {
-        let [a, b] = &sample.sides;
-        for (side, other) in [(a, b), (b, a)] {
+/// Both sides of a sample, each with the other.
+fn sides(sample: &Sample) -> [[&Reading; 2]; 2] {
+    let [a, b] = &sample.sides;
+    [[a, b], [b, a]]
+}
+
+/// The filled texels that lie beyond a joint.
+fn beyond(fields: &[Field], samples: &[Sample]) -> BTreeSet<Place> {
+    let of_side = |side: &Reading| {
+        let field = &fields[side.page as usize];
+        let is_beyond = |texel: u32| !field.is_measured(texel as usize) && way_beyond(field, side, texel).is_some();
+        side.moving
+            .iter()
+            .copied()
+            .filter(|&texel| is_beyond(texel))
+            .map(|texel| (side.page, texel))
+            .collect::<Vec<_>>()
+    };
+    samples.iter().flat_map(|sample| &sample.sides).flat_map(of_side).collect()
+}
+
+/// The way to a texel's centre beyond the edge: along the joint and out of the surface [m].
+fn way_beyond(field: &Field, side: &Reading, texel: u32) -> Option<DVec2> {
+    let way = side.metres * (centre(field, texel) - side.place);
+    let limit = INSIDE * side.metres.determinant().abs().sqrt();
+    (way.y <= limit).then_some(way)
+}
+
+struct Reader {
+    /// Texels to read for.
+    beyond: BTreeSet<Place>,
+    /// Those that were.
+    known: BTreeSet<Place>,
+}
+
+impl Reader {
+    /// One pass, over all that is not known yet.
+    fn read(&self, fields: &[Field], samples: &[Sample], pass: Pass) -> BTreeMap<Place, Read> {
+        let mut found: BTreeMap<Place, Read> = BTreeMap::new();
+        for [side, other] in samples.iter().flat_map(sides) {
             let field = &fields[side.page as usize];
-            for &texel in side.moving.iter().filter(|&&texel| !is_known(side.page, texel)) {
-                let way = centre(field, texel) - side.place;
+            for &texel in &side.moving {
                 let place = (side.page, texel);
-                let distance = way.length_squared();
+                if !self.beyond.contains(&place) || self.known.contains(&place) {
+                    continue;
+                }
+                let distance = (centre(field, texel) - side.place).length_squared();
                 if found.get(&place).is_some_and(|read| read.distance <= distance) {
                     continue;
                 }
-                let is_there =
-                    |texel| other.hangs_together(texel) && (pass == Pass::CarriedOn || is_known(other.page, texel));
-                if let Some(value) = across(&fields[other.page as usize], side, other, way, is_there) {
+                let Some(way) = way_beyond(field, side, texel) else { continue };
+                let is_there = |texel: u32| {
+                    other.hangs_together(texel)
+                        && self.may_read(&fields[other.page as usize], (other.page, texel), pass)
+                };
+                if let Some(value) = across(&fields[other.page as usize], other, way, is_there) {
                     found.insert(place, Read { distance, value });
                 }
             }
         }
+        found
     }
-    found
+
+    fn may_read(&self, field: &Field, place: Place, pass: Pass) -> bool {
+        let (_, texel) = place;
+        match pass {
+            Pass::Measured => field.is_measured(texel as usize),
+            Pass::Read => field.is_measured(texel as usize) || self.known.contains(&place),
+            // Where each stands for the other, as about the pole of a sphere, neither says more.
+            Pass::CarriedOn => !self.beyond.contains(&place) || self.known.contains(&place),
+        }
+    }
 }
 
 /// What the other side shows of a place beyond the edge of one [cd/m²].
-fn across(field: &Field, side: &Reading, other: &Reading, way: DVec2, is_there: impl Fn(u32) -> bool) -> Option<DVec3> {
-    let [along, inwards] = (side.metres * way).to_array();
-    let limit = INSIDE * side.metres.determinant().abs().sqrt();
-    if inwards > limit {
-        return None;
-    }
-    let point = other.place + other.metres.inverse() * DVec2::new(along, -inwards);
+fn across(field: &Field, other: &Reading, way: DVec2, is_there: impl Fn(u32) -> bool) -> Option<DVec3> {
+    let point = other.place + other.metres.inverse() * DVec2::new(way.x, -way.y);
     let (mut value, mut weights) = (DVec3::ZERO, 0.0);
-    for (texel, weight) in
-        Filtering::Bilinear.taps(field.size, point).iter().filter(|&(texel, _)| is_there(texel as u32))
-    {
-        value += weight * field.value[texel].as_dvec3();
-        weights += weight;
+    for (texel, weight) in Filtering::Bilinear.taps(field.size, point).iter() {
+        if is_there(texel as u32) {
+            value += weight * field.value[texel].as_dvec3();
+            weights += weight;
+        }
     }
     (weights >= 1.0 - MISSING).then(|| value / weights)
 }

@@ -7,7 +7,7 @@
 //! together with the joint by links: what lies beyond a wall keeps its light.
 
 use super::super::dilate::Owners;
-use super::super::lookup::{DisplayedRect, Filtering, Taps};
+use super::super::lookup::{DisplayedRect, Filtering};
 use super::borders::{Border, Joint};
 use crate::bake::charts::Charts;
 use crate::bake::repair::{Field, Surroundings, TexelState};

@@ -18,7 +18,7 @@ use glam::DVec3;
 const UNSEEN: f64 = 4e-3;
 
 /// How far a pair can pull its texels, in their errors.
-const STRENGTH: f64 = 30.0;
+const STRENGTH: f64 = 10.0;
 
 /// A pair that is off by less than this more than what is unseen, in that, is done.
 const CLOSE: f64 = 0.1;
