@@ -1,6 +1,7 @@
 //! The denoiser against long references (`tests/data/README.md`): 64 samples and it against 512 without it, and the
-//! contrast of contact shadows and shadow edges. What is judged by contrast and error is itself judged: a blur must
-//! fail the one, and what is not denoised the other.
+//! contrast of contact shadows and shadow edges, in the mean of a few bakes with other random numbers: of a single one
+//! either is a matter of luck. What is judged by contrast and error is itself judged: a blur must fail the one, and what
+//! is not denoised the other.
 
 mod common;
 #[path = "denoise/judge.rs"]
@@ -12,8 +13,8 @@ mod scenes;
 
 use bevy_kiln::bake::{BakeSettings, CancelToken, Denoise, Layout, Lightmap, Page, bake_lightmap};
 use bevy_kiln::trace::Transport;
-use glam::Vec3;
-use judge::{Judge, blurred};
+use judge::{Error, Judge, blurred};
+use reference::Reference;
 use scenes::Case;
 
 /// Samples per texel of the references: their errors are four times below the least that they judge.
@@ -22,20 +23,76 @@ const LONG: u32 = 8192;
 /// And those of the scenes that are denoised best.
 const LONGER: u32 = 16384;
 
-fn bake(case: &Case, samples_per_texel: u32, denoise: Denoise) -> Lightmap {
+/// Bakes of a case, each with its own random numbers.
+const BAKES: u64 = 5;
+
+fn bake(case: &Case, samples_per_texel: u32, denoise: Denoise, number: u64) -> Lightmap {
     let settings = BakeSettings {
         samples_per_texel,
         layout: Layout::Shared { size: case.size },
-        transport: Transport { seed: u64::from(samples_per_texel), ..Transport::default() },
+        transport: Transport { seed: u64::from(samples_per_texel) + number, ..Transport::default() },
         denoise,
         ..BakeSettings::default()
     };
     bake_lightmap(&case.scene, &settings, &(), &CancelToken::default()).unwrap()
 }
 
-/// Contrasts of a page that are off by more than a twentieth.
-fn faults_of_contrast(judge: &Judge<'_>, values: &[Vec3]) -> Vec<String> {
-    let [edges, contacts] = judge.contrasts(values);
+/// What was seen of one bake, or of a few in the mean.
+#[derive(Debug)]
+struct Seen {
+    /// Of 64 samples, those denoised, and 512.
+    raw: Error,
+    denoised: Error,
+    many: Error,
+    /// Of shadow edges and contacts, denoised.
+    contrasts: [f64; 2],
+    /// Errors by the report, before and after.
+    reported: [f64; 2],
+    /// Denoised light over raw.
+    total: f64,
+    /// The reference's own error.
+    reference: f64,
+}
+
+impl Seen {
+    fn new(case: &Case, reference: &Reference, number: u64) -> Self {
+        let few = bake(case, 64, Denoise::BuiltIn, number);
+        let many = bake(case, 512, Denoise::Off, number);
+        let page = &few.pages[0];
+        let judge = Judge::new(page, reference);
+        let report = few.report.denoised.unwrap();
+        assert!(!faults_of_contrast(judge.contrasts(&blurred(page, 1.5))).is_empty(), "a blur went unseen");
+        Self {
+            raw: judge.error(&page.raw),
+            denoised: judge.error(&page.radiance),
+            many: judge.error(&many.pages[0].radiance),
+            contrasts: judge.contrasts(&page.radiance),
+            reported: [report.before.mean, report.after.mean],
+            total: judge.total(&page.radiance) / judge.total(&page.raw),
+            reference: judge.error_of_reference(),
+        }
+    }
+
+    fn mean(all: &[Self]) -> Self {
+        let mean = |of: &dyn Fn(&Self) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
+        let error = |of: fn(&Self) -> Error| Error {
+            root: mean(&|seen| of(seen).root.powi(2)).sqrt(),
+            relative: mean(&|seen| of(seen).relative),
+        };
+        Self {
+            raw: error(|seen| seen.raw),
+            denoised: error(|seen| seen.denoised),
+            many: error(|seen| seen.many),
+            contrasts: [0, 1].map(|kind| mean(&|seen| seen.contrasts[kind])),
+            reported: [0, 1].map(|side| mean(&|seen| seen.reported[side])),
+            total: mean(&|seen| seen.total),
+            reference: mean(&|seen| seen.reference),
+        }
+    }
+}
+
+/// Contrasts that are off by more than a twentieth.
+fn faults_of_contrast([edges, contacts]: [f64; 2]) -> Vec<String> {
     let off = |(name, contrast): (&str, f64)| {
         ((contrast - 1.0).abs() > 0.05).then(|| format!("{name}: {contrast:.3} of the reference's contrast"))
     };
@@ -43,51 +100,32 @@ fn faults_of_contrast(judge: &Judge<'_>, values: &[Vec3]) -> Vec<String> {
 }
 
 fn assert_case(case: &Case) {
-    let few = bake(case, 64, Denoise::BuiltIn);
-    let many = bake(case, 512, Denoise::Off);
-    let page = &few.pages[0];
     let reference = reference::load(case.name);
-    let judge = Judge::new(page, &reference);
-
-    let [raw, denoised] = [&page.raw, &page.radiance].map(|values| judge.error(values));
-    let undenoised = judge.error(&many.pages[0].radiance);
-    let long = judge.error_of_reference();
-    let report = few.report.denoised.unwrap();
-    let estimates = [(report.before.mean, raw), (report.after.mean, denoised)];
-    println!("{}, {} texels, reference ± {long:.4}", case.name, few.report.texels);
-    println!(
-        "  root of the mean square: raw 64 {:.4}, denoised 64 {:.4}, raw 512 {:.4}",
-        raw.root, denoised.root, undenoised.root
-    );
-    println!(
-        "  mean relative: raw 64 {:.4}, denoised 64 {:.4}, raw 512 {:.4}",
-        raw.relative, denoised.relative, undenoised.relative
-    );
-    println!(
-        "  contrast of edges and contacts: denoised {:.3?}, raw 64 {:.3?}, raw 512 {:.3?}",
-        judge.contrasts(&page.radiance),
-        judge.contrasts(&page.raw),
-        judge.contrasts(&many.pages[0].raw)
-    );
-    println!("  raw 512 before seams were mended: {:.4?}", judge.error(&many.pages[0].raw));
-    for (estimate, error) in estimates {
-        println!("  estimated {estimate:.4}, is {:.4}", error.relative);
+    let each: Vec<Seen> = (0..BAKES).map(|number| Seen::new(case, &reference, number)).collect();
+    for Seen { raw, denoised, many, contrasts, .. } in &each {
+        println!(
+            "{}: root {:.4} {:.4} {:.4}, relative {:.4} {:.4} {:.4}, contrasts {contrasts:.3?}",
+            case.name, raw.root, denoised.root, many.root, raw.relative, denoised.relative, many.relative
+        );
     }
-    println!("  total light: {:+.5} of the raw", judge.total(&page.radiance) / judge.total(&page.raw) - 1.0);
+    let Seen { raw, denoised, many, contrasts, reported, total, reference: long } = Seen::mean(&each);
+    println!("in the mean, raw 64, denoised 64, raw 512, reference ± {long:.4}:");
+    println!("  root of the mean square: {:.4} {:.4} {:.4}", raw.root, denoised.root, many.root);
+    println!("  mean relative: {:.4} {:.4} {:.4}", raw.relative, denoised.relative, many.relative);
+    println!("  contrast of edges and contacts: {contrasts:.3?}");
+    println!("  by the report: {reported:.4?}; total light: {:+.5}", total - 1.0);
 
-    assert!(4.0 * long < undenoised.root.min(denoised.root), "the reference is too noisy: {long}");
-    assert!(denoised.root < undenoised.root, "{denoised:?} is not below {undenoised:?}");
-    assert!(denoised.relative < undenoised.relative, "{denoised:?} is not below {undenoised:?}");
-    assert_eq!(faults_of_contrast(&judge, &page.radiance), Vec::<String>::new());
-    for (estimate, error) in estimates {
+    assert!(4.0 * long < many.root.min(denoised.root), "the reference is too noisy: {long}");
+    assert!(denoised.root < many.root, "{denoised:?} is not below {many:?}");
+    assert!(denoised.relative < many.relative, "{denoised:?} is not below {many:?}");
+    assert_eq!(faults_of_contrast(contrasts), Vec::<String>::new());
+    for (estimate, error) in reported.into_iter().zip([raw, denoised]) {
         assert!((estimate / error.relative - 1.0).abs() < 0.2, "{estimate} is no estimate of {error:?}");
     }
     // What was denoised is the light that was found, within a few of its standard errors.
-    let drift = (judge.total(&page.radiance) - judge.total(&page.raw)).abs();
-    assert!(drift < 0.003 * judge.total(&page.raw), "the total moved by {drift}");
-    // The judges themselves.
-    assert!(raw.root > undenoised.root && raw.relative > undenoised.relative);
-    assert!(!faults_of_contrast(&judge, &blurred(page, 1.5)).is_empty(), "a blur went unseen");
+    assert!((total - 1.0).abs() < 0.003, "the total moved by {total}");
+    // The judge of errors itself.
+    assert!(raw.root > many.root && raw.relative > many.relative);
 }
 
 #[test]
@@ -101,8 +139,6 @@ fn room_with_a_patch_of_sun() {
 }
 
 #[test]
-#[ignore = "falls short: root .0139 and relative .0173 denoised against .0130 and .0169 of 512 samples, contacts .945, \
-            and the noise before is estimated as .0706 where it is .0586"]
 fn round_things_under_many_lamps() {
     assert_case(&scenes::lamps());
 }
@@ -115,7 +151,7 @@ fn make_references() {
     let only = std::env::var("DENOISE_ONLY").ok();
     for case in scenes::all().into_iter().filter(|case| only.as_deref().is_none_or(|only| only == case.name)) {
         let samples = if case.name == "sunlit" { LONG } else { LONGER };
-        let lightmap = bake(&case, samples, Denoise::Off);
+        let lightmap = bake(&case, samples, Denoise::Off, 0);
         let page: &Page = &lightmap.pages[0];
         reference::save(case.name, page);
         println!("{}: {:?}", case.name, lightmap.report.relative_stderr);

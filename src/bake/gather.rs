@@ -59,6 +59,8 @@ pub(super) enum Start {
 pub(super) struct Estimate {
     pub(super) mean: DVec3,
     pub(super) stderr: DVec3,
+    /// Standard error of the luminance: lights of different colours need not err together.
+    pub(super) luminance_error: f64,
     /// The mean over every second run: the other half's is `2 mean - half`, and the two are independent.
     pub(super) half: DVec3,
     pub(super) samples: u64,
@@ -124,18 +126,21 @@ impl Estimate {
         let squares: DVec3 = means.iter().map(|&value| (value - mean) * (value - mean)).sum();
         let variance_of_mean = squares / (count * (count - 1.0));
         let stderr = DVec3::from(variance_of_mean.to_array().map(f64::sqrt));
+        let off = |&value: &DVec3| luminance(value - mean);
+        let luminance_error =
+            (means.iter().map(|value| off(value).powi(2)).sum::<f64>() / (count * (count - 1.0))).sqrt();
         let half = means.iter().step_by(2).sum::<DVec3>() / (0.5 * count);
         let samples = per_replicate * u64::from(REPLICATES);
         let Tally { rays, endless, .. } = tally;
         let clamped = taken / samples as f64;
         let accepted = samples as f64 / tries as f64;
-        Some(Self { mean, stderr, half, samples, rays, accepted, clamped, not_light, endless })
+        Some(Self { mean, stderr, luminance_error, half, samples, rays, accepted, clamped, not_light, endless })
     }
 
     /// Standard error over value, by luminance; `None` for a black estimate.
     pub(super) fn relative_stderr(&self) -> Option<f64> {
         let value = luminance(self.mean);
-        (value > 0.0).then(|| luminance(self.stderr) / value)
+        (value > 0.0).then(|| self.luminance_error / value)
     }
 }
 

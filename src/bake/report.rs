@@ -80,8 +80,8 @@ pub struct SeamReport {
 }
 
 /// How far two lookups at one point of a joint are apart, bilinear and bicubic ones, over the local value: that of the
-/// strongest channel of the mean of both, and at least a hundredth of the brightest texel that is read, or what such a
-/// hundredth of a brighter place farther along the seams has fallen off to.
+/// strongest channel of the mean of both, and at least a fiftieth of the brightest texel that is read, or what such a
+/// fiftieth of a brighter place farther along the seams has fallen off to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Jump {
     /// 99th percentile.

@@ -115,6 +115,10 @@ proptest! {
         prop_assert_eq!(touched_inside(&lightmap), 0);
         let jump = worst_jump(&scene, &lightmap, &pairs(&scene, Edges::Smooth));
         prop_assert!(jump <= TARGET, "{}", jump);
+        // The texels of these tiles are in line: what is read across joints leaves next to nothing to solve.
+        if let Some(seams) = lightmap.report.seams {
+            prop_assert!(seams.before.p99 < 0.05, "{}", seams.before.p99);
+        }
         for page in &lightmap.pages {
             prop_assert!(page.radiance.iter().all(|value| value.is_finite() && value.min_element() >= 0.0));
         }

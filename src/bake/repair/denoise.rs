@@ -33,6 +33,7 @@ use crate::bake::gather::{Estimate, relative_error};
 use crate::bake::report::Denoised;
 use crate::bake::workers::Workers;
 use crate::bake::{BakeError, CancelToken};
+use crate::math::luminance;
 use fit::{Fitted, Member, Place, Sums};
 use glam::Vec3;
 use likeness::Looks;
@@ -47,21 +48,23 @@ const REACH: f32 = 4.0;
 
 /// Takes the noise out of the pages; says how much there was and how much is left.
 pub(super) fn denoise(fields: &mut [Field], workers: &Workers<'_>) -> Result<Denoised, BakeError> {
-    let before = relative_error(&estimates(fields, |field| &field.stderr));
+    let before = relative_error(&estimates(fields));
     for field in fields.iter_mut() {
         denoise_page(field, workers)?;
     }
-    Ok(Denoised { before, after: relative_error(&estimates(fields, |field| &field.residual)) })
+    Ok(Denoised { before, after: relative_error(&estimates(fields)) })
 }
 
-/// Measured texels with one of their layers of errors.
-fn estimates(fields: &[Field], error: impl Fn(&Field) -> &Vec<Vec3>) -> Vec<Estimate> {
+/// Measured texels with what is left of their errors.
+fn estimates(fields: &[Field]) -> Vec<Estimate> {
     let of_field = |field: &Field| {
         let measured = (0..field.value.len()).filter(|&index| field.is_measured(index));
-        let estimate = |index: usize| Estimate {
-            mean: field.value[index].as_dvec3(),
-            stderr: error(field)[index].as_dvec3(),
-            ..Estimate::default()
+        let estimate = |index: usize| {
+            let [whole, left] = [field.stderr[index], field.residual[index]].map(|error| luminance(error.as_dvec3()));
+            // Channels err together in what is left as they did before.
+            let share = if whole > 0.0 { left / whole } else { 0.0 };
+            let luminance_error = share * f64::from(field.luminance_error[index]);
+            Estimate { mean: field.value[index].as_dvec3(), luminance_error, ..Estimate::default() }
         };
         measured.map(estimate).collect::<Vec<_>>()
     };
@@ -75,6 +78,8 @@ struct Level {
     own: [Fitted; 2],
     /// Each half by the other half's weights.
     crossed: [Fitted; 2],
+    /// The same as planes.
+    flat: [Fitted; 2],
     /// Least and most of what it is made of.
     range: [Vec3; 2],
 }
@@ -143,8 +148,13 @@ fn filter(texels: &Texels, looks: &[Looks<'_>; 2], reached: &[Reached], radius: 
             }
         }
     }
-    let [[first, second_by_first], [first_by_second, second]] = sums.map(|sums| sums.fitted(radius));
-    Level { own: [first, second], crossed: [first_by_second, second_by_first], range }
+    let [by_first, by_second] = sums.map(|sums| sums.fitted(radius));
+    Level {
+        own: [by_first.curved[0], by_second.curved[1]],
+        crossed: [by_second.curved[0], by_first.curved[1]],
+        flat: [by_second.flat[0], by_first.flat[1]],
+        range,
+    }
 }
 
 fn widest([low, high]: [Vec3; 2], [other_low, other_high]: [Vec3; 2]) -> [Vec3; 2] {

@@ -27,6 +27,8 @@ pub(in crate::bake) struct Field {
     pub(in crate::bake) value: Vec<Vec3>,
     /// Standard error of what was measured [cd/m²].
     pub(in crate::bake) stderr: Vec<Vec3>,
+    /// Standard error of the luminance of what was measured [cd/m²].
+    pub(in crate::bake) luminance_error: Vec<f32>,
     /// Standard error of `value` after denoising, as estimated [cd/m²].
     pub(in crate::bake) residual: Vec<Vec3>,
     /// What half of the runs measured: `2 value - half` is the other half's before repair, and the two are independent
@@ -54,6 +56,7 @@ impl Field {
             size,
             value: vec![Vec3::ZERO; count],
             stderr: vec![Vec3::ZERO; count],
+            luminance_error: vec![0.0; count],
             residual: vec![Vec3::ZERO; count],
             half: vec![Vec3::ZERO; count],
             state: vec![TexelState::Empty; count],
@@ -70,6 +73,7 @@ impl Field {
         let index = site.covered.index as usize;
         self.value[index] = estimate.mean.as_vec3();
         self.stderr[index] = estimate.stderr.as_vec3();
+        self.luminance_error[index] = estimate.luminance_error as f32;
         self.residual[index] = self.stderr[index];
         self.half[index] = estimate.half.as_vec3();
         self.state[index] = TexelState::Measured;

@@ -1,15 +1,18 @@
-//! A paraboloid through weighted texels, as it is in the middle.
+//! A paraboloid and a plane through weighted texels, as they are in the middle.
 
 use glam::Vec3;
 
 /// Terms of a paraboloid: 1, x, y, x², xy, y².
 const TERMS: usize = 6;
 
+/// Those of a plane.
+const TERMS_OF_A_PLANE: usize = 3;
+
 /// What holds slopes and curvature where the texels do not, in weights of one texel at the window's rim. Little enough
 /// to leave the few texels at the foot of something their slope.
 const RIDGE: f64 = 0.00003;
 
-/// A paraboloid in the middle of its window.
+/// A surface in the middle of its window.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fitted {
     pub(super) value: Vec3,
@@ -19,6 +22,15 @@ pub(super) struct Fitted {
     pub(super) variance: Vec3,
     /// The share of the middle's own value in it.
     pub(super) own: f32,
+}
+
+/// What both halves are by the same weights.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Fits {
+    /// As paraboloids.
+    pub(super) curved: [Fitted; 2],
+    /// As planes.
+    pub(super) flat: [Fitted; 2],
 }
 
 /// The terms at a place.
@@ -87,10 +99,16 @@ impl Sums {
         self.ratio += ratio * weight;
     }
 
-    /// The paraboloids of both halves in the middle of a window of some radius [texels].
-    pub(super) fn fitted(&self, radius: f32) -> [Fitted; 2] {
+    /// Both halves in the middle of a window of some radius [texels].
+    pub(super) fn fitted(&self, radius: f32) -> Fits {
         let factor = self.factor();
-        let [value, along_x, along_y] = [0, 1, 2].map(|term| solve(&factor, term));
+        let [curved, flat] = [TERMS, TERMS_OF_A_PLANE].map(|terms| self.fitted_to(terms, &factor, radius));
+        Fits { curved, flat }
+    }
+
+    /// The same with the first terms only. The leading block of the factor is the factor of the leading block.
+    fn fitted_to(&self, terms: usize, factor: &Matrix, radius: f32) -> [Fitted; 2] {
+        let [value, along_x, along_y] = [0, 1, 2].map(|term| solve(factor, terms, term));
         let mut spread = 0.0;
         for (a, &by_row) in value.iter().enumerate() {
             for (b, &by_column) in value.iter().enumerate() {
@@ -124,16 +142,16 @@ impl Sums {
     }
 }
 
-/// A row of the inverse of a matrix by its Cholesky factor: L y = e, Lᵀ x = y.
-fn solve(factor: &Matrix, unit: usize) -> [f64; TERMS] {
+/// A row of the inverse of a matrix's leading block, by its Cholesky factor: L y = e, Lᵀ x = y.
+fn solve(factor: &Matrix, terms: usize, unit: usize) -> [f64; TERMS] {
     let mut y = [0.0; TERMS];
-    for row in 0..TERMS {
+    for row in 0..terms {
         let known: f64 = (0..row).map(|column| factor[row][column] * y[column]).sum();
         y[row] = (f64::from(u8::from(row == unit)) - known) / factor[row][row];
     }
     let mut x = [0.0; TERMS];
-    for row in (0..TERMS).rev() {
-        let known: f64 = (row + 1..TERMS).map(|column| factor[column][row] * x[column]).sum();
+    for row in (0..terms).rev() {
+        let known: f64 = (row + 1..terms).map(|column| factor[column][row] * x[column]).sum();
         x[row] = (y[row] - known) / factor[row][row];
     }
     x

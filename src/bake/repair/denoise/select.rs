@@ -7,6 +7,9 @@
 //! 2012, Rousselle et al. 2012), and is taken off first. The share of the difference that is light is one number for
 //! all channels of a surrounding.
 //!
+//! At the border of a chart fits see one side only, where curvature is mostly noise. There a share of the plane through
+//! the small window is blended in, found in the same way. Elsewhere planes would take a little light from peaks.
+//!
 //! Owns the choice; knows nothing of how the fits are made.
 
 use super::fit::Fitted;
@@ -19,12 +22,6 @@ use glam::Vec3;
 
 /// Over which surrounding a share is estimated [texels].
 const RADIUS: f32 = 10.0;
-
-/// What a share must exceed, in its standard errors: the small window has to show that it is needed.
-const LEAST: f32 = 0.5;
-
-/// The channels of one path come together: their errors are as good as one.
-const CHANNELS: f32 = 3.0;
 
 /// What a texel may be.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,10 +43,14 @@ impl Candidate {
         }
     }
 
-    /// The value and the residual with a share of another. Residuals are mixed as if both had the same error: they are
-    /// made of the same texels.
-    fn blended(self, other: Self, share: f32) -> [Vec3; 2] {
-        [self.value.lerp(other.value, share), self.residual.lerp(other.residual, share)]
+    /// This with a share of another. Residuals are mixed as if both had the same error: they are made of the same
+    /// texels.
+    fn blended(self, other: Self, share: f32) -> Self {
+        Self {
+            value: self.value.lerp(other.value, share),
+            residual: self.residual.lerp(other.residual, share),
+            own: self.own + share * (other.own - self.own),
+        }
     }
 }
 
@@ -59,53 +60,60 @@ pub(super) fn best(
     [small, large]: [&[Level]; 2],
     workers: &Workers<'_>,
 ) -> Result<Vec<[Vec3; 2]>, BakeError> {
-    let candidates = |levels: &[Level]| {
+    let candidates = |levels: &[Level], halves: fn(&Level) -> [Fitted; 2]| {
         let mut candidates = vec![Candidate::default(); texels.links.len()];
         for (&index, level) in texels.measured.iter().zip(levels) {
-            candidates[index] = Candidate::of_halves(level.crossed);
+            candidates[index] = Candidate::of_halves(halves(level));
         }
         candidates
     };
-    let choice = Choice { texels, small: candidates(small), large: candidates(large) };
     let window = Window::new(RADIUS);
-    workers.gather_quietly(&texels.measured, |&index, cancel| {
-        live(cancel)?;
-        Some(choice.large[index].blended(choice.small[index], choice.share_of_small(index, &window)))
-    })
+    let mut best = candidates(large, |level| level.crossed);
+    let mut blend = |wanted: &[usize], other: &[Candidate]| -> Result<(), BakeError> {
+        let choice = Choice { texels, best: &best, other };
+        let blends = workers.gather_quietly(wanted, |&index, cancel| {
+            live(cancel)?;
+            Some(best[index].blended(other[index], choice.share_of_other(index, &window)))
+        })?;
+        wanted.iter().zip(blends).for_each(|(&index, blended)| best[index] = blended);
+        Ok(())
+    };
+    blend(&texels.measured, &candidates(small, |level| level.crossed))?;
+    let borders: Vec<usize> = texels.measured.iter().copied().filter(|&index| !texels.is_whole(index)).collect();
+    blend(&borders, &candidates(small, |level| level.flat))?;
+    Ok(texels.measured.iter().map(|&index| [best[index].value, best[index].residual]).collect())
 }
 
 /// Between two candidates of each texel.
 struct Choice<'a> {
     texels: &'a Texels,
-    small: Vec<Candidate>,
-    large: Vec<Candidate>,
+    best: &'a [Candidate],
+    other: &'a [Candidate],
 }
 
 impl Choice<'_> {
-    /// The share of the small window that is best about a texel, in [0, 1].
-    fn share_of_small(&self, index: usize, window: &Window) -> f32 {
+    /// The share of the other candidate that is best about a texel, in [0, 1].
+    fn share_of_other(&self, index: usize, window: &Window) -> f32 {
         let texels = self.texels;
-        let is_whole = |index: usize| texels.links[index] == u8::MAX;
-        let (mut gain, mut squares, mut noise) = (0.0, 0.0, 0.0);
+        let (mut gain, mut squares) = (0.0, 0.0);
         for reached in window.reach(texels, index) {
             let there = reached.index;
-            if is_whole(there) != is_whole(index) {
+            if texels.is_whole(there) != texels.is_whole(index) {
                 // At a border fits look to one side only, which makes other errors.
                 continue;
             }
             let near = 1.0 - reached.squared_distance() / (RADIUS * RADIUS);
-            let [large, small] = [self.large[there], self.small[there]];
+            let [best, other] = [self.best[there], self.other[there]];
             // All in standard errors of the measurement.
             let scale = root(0.5 * texels.variance[there]);
             let is_measured = scale.cmpgt(Vec3::ZERO);
             let in_errors = |value: Vec3| Vec3::select(is_measured, value / scale, Vec3::ZERO);
-            let difference = in_errors(small.value - large.value);
-            let rest = in_errors(texels.mean(there) - large.value);
-            let by_noise = Vec3::select(is_measured, Vec3::splat(small.own - large.own), Vec3::ZERO);
+            let difference = in_errors(other.value - best.value);
+            let rest = in_errors(texels.mean(there) - best.value);
+            let by_noise = Vec3::select(is_measured, Vec3::splat(other.own - best.own), Vec3::ZERO);
             gain += near * (difference * rest - by_noise).element_sum();
             squares += near * difference.length_squared();
-            noise += near * near * difference.length_squared();
         }
-        if squares > 0.0 { ((gain - LEAST * f32::sqrt(CHANNELS * noise)) / squares).clamp(0.0, 1.0) } else { 0.0 }
+        if squares > 0.0 { (gain / squares).clamp(0.0, 1.0) } else { 0.0 }
     }
 }

@@ -59,6 +59,11 @@ impl Texels {
         0.5 * (self.halves[0][index] + self.halves[1][index])
     }
 
+    /// Whether all neighbours of a texel may be walked to.
+    pub(super) fn is_whole(&self, index: usize) -> bool {
+        self.links[index] == u8::MAX
+    }
+
     /// The bit of a step in a set of links.
     pub(super) fn bit(step: [i32; 2]) -> u8 {
         STEPS.iter().position(|&other| other == step).map_or(0, |place| 1 << place)
