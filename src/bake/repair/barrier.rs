@@ -21,6 +21,10 @@ const REACH: i32 = 2;
 /// How far it is looked for a way around.
 const WINDOW: i32 = 8;
 
+/// A side of which less than this share of each texel is in sight, in [0, 1], is a slit: between books on a shelf, or
+/// under a door. It is darker than what is beside it, and nobody looks into it; the board before the books is seen.
+const LEAST_SEEN: f32 = 0.5;
+
 /// Ratio of the sides' brightness up to which nothing is done, and from which the brighter side is held to the other.
 const SAME: f64 = 2.0;
 const OTHER: f64 = 8.0;
@@ -32,6 +36,9 @@ pub(super) fn stop_light_at_walls(field: &mut Field) {
     for here in (0..field.value.len()).filter(|&index| field.is_measured(index)) {
         let beyond = beyond(field, here, &mut walk);
         if beyond.is_empty() {
+            continue;
+        }
+        if walk.reached.iter().all(|&index| field.seen[index] < LEAST_SEEN) {
             continue;
         }
         let level = level(field, &walk);
@@ -205,6 +212,7 @@ mod tests {
         for index in 0..256_usize {
             let [x, y] = [index as u32 % 16, index as u32 / 16];
             field.state[index] = TexelState::Measured;
+            field.seen[index] = 1.0;
             field.value[index] = white(if x < 8 { dark } else { bright });
             let mut links = Links::default();
             for step in NEIGHBOURS {
@@ -227,6 +235,20 @@ mod tests {
             let expected = if index % 16 < 10 { 0.0 } else { 4.0 };
             assert_eq!(field.value[index], white(expected), "{index}");
         }
+    }
+
+    /// The board before a row of books is no wall's bright side.
+    #[test]
+    fn a_slit_holds_nothing_down() {
+        let mut field = walled(0.0, 4.0, 99);
+        (0..256_usize).filter(|index| index % 16 < 8).for_each(|index| field.seen[index] = 0.2);
+        let before = field.clone();
+        stop_light_at_walls(&mut field);
+        assert_eq!(field.value, before.value);
+        // One texel in sight makes it a room, as far as one can walk to it.
+        field.seen[16 * 8 + 7] = 1.0;
+        stop_light_at_walls(&mut field);
+        assert_eq!(field.value[16 * 8 + 8], white(0.0));
     }
 
     #[test]

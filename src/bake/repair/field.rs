@@ -44,6 +44,8 @@ pub(in crate::bake) struct Field {
     pub(in crate::bake) normal: Vec<Vec3>,
     /// The neighbours, in its chart, that can be reached from it without passing through a surface.
     pub(in crate::bake) links: Vec<Links>,
+    /// Share of its area that is covered and in sight, in [0, 1].
+    pub(in crate::bake) seen: Vec<f32>,
     /// Whether a part of it that is seen cannot be reached from that place.
     pub(in crate::bake) is_split: Vec<bool>,
 }
@@ -64,6 +66,7 @@ impl Field {
             position: vec![Vec3::ZERO; count],
             normal: vec![Vec3::ZERO; count],
             links: vec![Links::default(); count],
+            seen: vec![0.0; count],
             is_split: vec![false; count],
         }
     }
@@ -76,6 +79,7 @@ impl Field {
         self.luminance_error[index] = estimate.luminance_error as f32;
         self.residual[index] = self.stderr[index];
         self.half[index] = estimate.half.as_vec3();
+        self.seen[index] = (site.covered.texel.coverage.min(1.0) * estimate.accepted) as f32;
         self.state[index] = TexelState::Measured;
         self.chart[index] = site.covered.chart;
         self.position[index] = site.footing.anchor.position();

@@ -28,7 +28,7 @@ const SWEEPS: usize = 8000;
 const PERIOD: usize = 20;
 
 /// If in that time no texel moves by more than this, in its error, none will.
-const SETTLED: f64 = 3e-4;
+const SETTLED: f64 = 2e-3;
 
 /// An unknown: one texel.
 #[derive(Clone, Copy, Debug)]
