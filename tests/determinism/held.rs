@@ -23,13 +23,13 @@ pub struct Held {
 pub const HELD: [Held; 3] = [
     Held {
         name: "cornell",
-        hash: 0xbd15_b505_e1c6_c8d2,
+        hash: 0x74d9_1390_f889_72a5,
         scene: || glb::load("cornell"),
         density: 1.0,
         layout: Layout::Shared { size: 32 },
     },
-    Held { name: "garden", hash: 0x1df8_e91e_73a0_9591, scene: garden, density: 5.0, layout: Layout::Packed },
-    Held { name: "vitrine", hash: 0x194a_d446_9b5d_b65b, scene: vitrine, density: 4.0, layout: Layout::Packed },
+    Held { name: "garden", hash: 0x3533_4be0_9145_bbd8, scene: garden, density: 5.0, layout: Layout::Packed },
+    Held { name: "vitrine", hash: 0xb5b5_a42e_f601_ef99, scene: vitrine, density: 4.0, layout: Layout::Packed },
 ];
 
 impl Held {

@@ -182,6 +182,24 @@ fn what_light_missed_by_chance_is_no_speck() {
     }
 }
 
+/// Where light is rare a texel that little of it found looks certain. One is a speck, a pool of them is a shadow.
+#[test]
+fn what_light_nearly_missed_is_no_speck() {
+    let mut field = noisy([48, 48], 12, 0.3, |_, _| Vec3::ONE);
+    let speck = 48 * 10 + 10;
+    let is_pool = |index: usize| (index % 48).abs_diff(34).pow(2) + (index / 48).abs_diff(34).pow(2) <= 25;
+    let mut random = Random::new(13);
+    for index in (0..field.value.len()).filter(|&index| index == speck || is_pool(index)) {
+        let runs: Vec<Vec3> = (0..16).map(|_| Vec3::splat(0.3 * (1.0 + 0.2 * normal(&mut random)))).collect();
+        measure(&mut field, index, &runs);
+    }
+    let after = denoised(&field);
+    assert!(after.value[speck].x > 0.7, "{}", after.value[speck]);
+    for index in (0..after.value.len()).filter(|&index| is_pool(index)) {
+        assert!((after.value[index].x - 0.3).abs() < 0.1, "{index}: {}", after.value[index]);
+    }
+}
+
 /// Beyond an edge there are more black texels than chance makes, and all to one side.
 #[test]
 fn what_is_black_beside_rare_light_stays_black() {

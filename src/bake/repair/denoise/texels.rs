@@ -15,6 +15,10 @@ const ALIKE: f32 = 6.0;
 /// How far variances are averaged [texels].
 const VARIANCE_RADIUS: f32 = 4.0;
 
+/// Within how many texels a share of how many must be as certain as a texel that is to be trusted.
+const TRUST_RADIUS: f32 = 3.0;
+const TRUSTED: f32 = 0.2;
+
 /// A page as the denoiser sees it, row by row. What is not measured has no links and is never looked at.
 pub(super) struct Texels {
     pub(super) width: u32,
@@ -50,6 +54,7 @@ impl Texels {
         }
         let window = Window::new(VARIANCE_RADIUS);
         texels.variance = luck::variance_of_unlucky(&texels, &window);
+        texels.variance = texels.trusted_variance(&Window::new(TRUST_RADIUS));
         texels.variance = texels.smooth_variance(&window);
         texels
     }
@@ -78,6 +83,25 @@ impl Texels {
     /// The neighbour behind a bit of the links, if it is set.
     pub(super) fn neighbour(&self, index: usize, number: usize) -> usize {
         self.at(index, STEPS[number])
+    }
+
+    /// Raises variances that are lower than most about them. Where light is rare a texel that little of it found is dark
+    /// and its runs agree: it looks certain. Beyond the edge of a shadow there are more of its kind. (What has no error
+    /// at all is `luck`'s.)
+    fn trusted_variance(&self, window: &Window) -> Vec<Vec3> {
+        let mut trusted = self.variance.clone();
+        let mut around = Vec::new();
+        for &index in &self.measured {
+            let reached = window.reach(self, index);
+            let lowest = (reached.len() as f32 * TRUSTED) as usize;
+            for channel in (0..3).filter(|&channel| self.variance[index][channel] > 0.0) {
+                around.clear();
+                around.extend(reached.iter().map(|other| self.variance[other.index][channel]));
+                let (_, least, _) = around.select_nth_unstable_by(lowest, f32::total_cmp);
+                trusted[index][channel] = trusted[index][channel].max(*least);
+            }
+        }
+        trusted
     }
 
     /// Averages each variance with those about it that may be estimates of the same.
