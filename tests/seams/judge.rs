@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use std::num::NonZeroUsize;
 
 /// Points compared along each piece of an edge.
-const POINTS: u32 = 7;
+const POINTS: u32 = 101;
 
 /// The jump that nobody sees.
 pub const TARGET: f32 = 0.01;

@@ -19,7 +19,11 @@ const DEFECT: f64 = 0.3;
 /// How far apart two copies of a point may come to lie and still be one, over the size of the chart.
 const APART: f64 = 2e-4;
 
-/// Unrolls a patch; `None` if it bends both ways, or if there is no work left.
+/// A cut that opens by less than this is a slit [rad]: its two sides are so near each other on the page that there is no
+/// room between them for what lies beyond either. A tube's ends, on the far sides of the strip, are none.
+const NARROW: f64 = 0.5;
+
+/// Unrolls a patch; `None` if it bends both ways, if it would have a slit, or if there is no work left.
 pub(super) fn unroll(surface: &Surface, patch: &Patch, work: &mut Work<'_>) -> Option<Chart> {
     if !work.takes(8 * patch.len() as u64) || !bends_one_way(surface, patch) {
         return None;
@@ -31,11 +35,20 @@ pub(super) fn unroll(surface: &Surface, patch: &Patch, work: &mut Work<'_>) -> O
         .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &point| (low.min(point), high.max(point)));
     let slack = APART * (high - low).max_element();
     let place = |half: u32| flat[half as usize / 3][half as usize % 3];
-    let (corners, count) = patch.corners(|half| {
+    let is_joined = |half: u32| {
         let other = patch.across[half as usize];
         let is_near = |a: u32, b: u32| (place(a) - place(b)).length() <= slack;
         is_tree[half as usize] || (is_near(half, after(other)) && is_near(after(half), other))
-    });
+    };
+    let is_slit = |half: u32| {
+        let other = patch.across[half as usize];
+        let edge = |half: u32| [place(half), place(after(half))];
+        other != NONE && !is_joined(half) && is_slit(edge(half), edge(other))
+    };
+    if (0..3 * patch.len() as u32).any(is_slit) {
+        return None;
+    }
+    let (corners, count) = patch.corners(is_joined);
     let mut points = vec![DVec2::ZERO; count];
     for (corners, flat) in corners.iter().zip(&flat).rev() {
         for corner in 0..3 {
@@ -43,6 +56,14 @@ pub(super) fn unroll(surface: &Surface, patch: &Patch, work: &mut Work<'_>) -> O
         }
     }
     Some(Chart { triangles: patch.triangles.clone(), corners, points })
+}
+
+/// Whether the two copies of an edge, each with its triangle on the left, have a narrow gap between them.
+fn is_slit(first: [DVec2; 2], second: [DVec2; 2]) -> bool {
+    let along = first[1] - first[0];
+    let back = second[0] - second[1];
+    let aside = 0.5 * (second[0] + second[1] - first[0] - first[1]);
+    along.perp_dot(aside) < 0.0 && crate::math::Portable::atan2(along.perp_dot(back).abs(), along.dot(back)) < NARROW
 }
 
 /// Whether the angles around the inner points make whole turns.
@@ -139,6 +160,18 @@ mod tests {
             ..Mesh::default()
         };
         Surface::new(&mesh, &Shape::new(&Affine3A::IDENTITY))
+    }
+
+    /// A flat cone opens by too little to be cut, a steep one does not.
+    #[test]
+    fn a_flat_cone_is_not_slit() {
+        for (radius, is_unrolled) in [(5.0, false), (1.0, true)] {
+            let surface = rings(24, [radius, 0.0]);
+            let patches = Patch::whole(&surface);
+            let cancel = CancelToken::default();
+            let chart = unroll(&surface, &patches[0], &mut Work::new(surface.len(), &cancel));
+            assert_eq!(chart.is_some(), is_unrolled, "{radius}");
+        }
     }
 
     #[test]

@@ -3,8 +3,8 @@
 //! Minimised is Σ ½ (d/e)² over the texels, d being how far one moves and e its error, plus for every lookup pair with
 //! the difference u the penalty c · max(0, |u| − t): t is a jump that nobody sees, and c bounds how hard the pair may
 //! pull (the loss of support vector regression, Vapnik 1995). So pairs that can agree do, and pairs that cannot pull
-//! with a force that does not grow: they distort nothing, and nothing needs to know beforehand which these are. No texel
-//! leaves its bounds. (Seams of lightmaps as least squares are Iwanicki's, "Lighting Technology of The Last of Us",
+//! with a force that does not grow with the jump: they distort nothing, and nothing needs to know beforehand which these
+//! are. No texel leaves its bounds. (Seams of lightmaps as least squares are Iwanicki's, "Lighting Technology of The Last of Us",
 //! 2013; there every pair pulls as hard as it is far off.)
 //!
 //! Solved is the dual problem, one pair's pull after the other (Hildreth 1957; Hsieh et al. 2008): texels are where all
@@ -12,13 +12,18 @@
 //! in a fixed order.
 
 use crate::bake::CancelToken;
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 
 /// The relative jump that nobody sees.
 const UNSEEN: f64 = 4e-3;
 
 /// How far a pair can pull its texels, in their errors.
 const STRENGTH: f64 = 10.0;
+
+/// A pair that is left apart by more than this, relative, though it pulls as hard as it can, may pull so many times as
+/// hard, once: at the dark foot of a shadow both sides are uncertain, and what is left is much to what is local.
+const LEFT_APART: f64 = 8e-3;
+const HARDER: f64 = 3.0;
 
 /// A pair that is off by less than this more than what is unseen, in that, is done.
 const CLOSE: f64 = 0.1;
@@ -123,23 +128,9 @@ impl Rows {
 pub(super) fn solve(rows: &Rows, unknowns: &[Unknown], cancel: &CancelToken) -> Option<Solution> {
     let mut state = State::new(rows, unknowns);
     let before = rows.jumps(&state.moves);
-    for _ in 0..SWEEPS / PERIOD {
-        let busy = state.busy();
-        if busy.is_empty() {
-            break;
-        }
-        let before = state.moves.clone();
-        for _ in 0..PERIOD / 2 {
-            if cancel.is_cancelled() {
-                return None;
-            }
-            // There and back again, so that both ends of a seam hear of each other.
-            busy.iter().for_each(|&row| state.pull(row));
-            busy.iter().rev().for_each(|&row| state.pull(row));
-        }
-        if state.is_settled(&before) {
-            break;
-        }
+    state.settle(cancel)?;
+    if state.strengthen() {
+        state.settle(cancel)?;
     }
     let after = rows.jumps(&state.moves);
     Some(Solution { moves: state.moves, before, after })
@@ -181,6 +172,47 @@ impl<'a> State<'a> {
         }
     }
 
+    /// Lets all pull until nothing moves; `None` if cancelled.
+    fn settle(&mut self, cancel: &CancelToken) -> Option<()> {
+        for _ in 0..SWEEPS / PERIOD {
+            let busy = self.busy();
+            if busy.is_empty() {
+                break;
+            }
+            let before = self.moves.clone();
+            for _ in 0..PERIOD / 2 {
+                if cancel.is_cancelled() {
+                    return None;
+                }
+                // There and back again, so that both ends of a seam hear of each other.
+                busy.iter().for_each(|&row| self.pull(row));
+                busy.iter().rev().for_each(|&row| self.pull(row));
+            }
+            if self.is_settled(&before) {
+                break;
+            }
+        }
+        Some(())
+    }
+
+    /// Lets pairs that are left apart pull harder; whether there are any.
+    fn strengthen(&mut self) -> bool {
+        let jumps = self.rows.jumps(&self.moves);
+        let mut is_any = false;
+        for (row, jump) in jumps.into_iter().enumerate() {
+            if jump > LEFT_APART && self.is_spent(row).any() {
+                self.strengths[row] *= HARDER;
+                is_any = true;
+            }
+        }
+        is_any
+    }
+
+    /// In which channels a row pulls as hard as it can.
+    fn is_spent(&self, row: usize) -> BVec3 {
+        self.pulls[row].abs().cmpge(DVec3::splat(self.strengths[row]))
+    }
+
     /// Whether no unknown has moved by what would matter.
     fn is_settled(&self, before: &[DVec3]) -> bool {
         let steps = self.moves.iter().zip(before).map(|(&now, &before)| (now - before).abs().max_element());
@@ -196,10 +228,8 @@ impl<'a> State<'a> {
         let busy = (0..self.rows.len()).filter(|&row| {
             let unseen = self.unseen[row];
             let excess = self.rows.left(row, &self.moves).abs() - unseen;
-            let pull = self.pulls[row];
-            let is_spent = pull.abs().cmpge(DVec3::splat(self.strengths[row]));
-            is_done &= (excess.cmple(DVec3::splat(CLOSE * unseen)) | is_spent).all();
-            self.yields[row] > 0.0 && (pull != DVec3::ZERO || excess.max_element() > 0.0)
+            is_done &= (excess.cmple(DVec3::splat(CLOSE * unseen)) | self.is_spent(row)).all();
+            self.yields[row] > 0.0 && (self.pulls[row] != DVec3::ZERO || excess.max_element() > 0.0)
         });
         let busy: Vec<usize> = busy.collect();
         if is_done { Vec::new() } else { busy }
@@ -301,7 +331,7 @@ mod tests {
             assert!((0.1 - 1e-12..=2.0 + 1e-12).contains(&value), "{value}");
         }
         // The certain ones move by no more than their pairs' pull.
-        let most = STRENGTH / (1e-6_f64 + 0.25).sqrt() * 1e-6;
+        let most = HARDER * STRENGTH / (1e-6_f64 + 0.25).sqrt() * 1e-6;
         assert!(moves[..2].iter().all(|step| step.x.abs() <= most * (1.0 + 1e-9)), "{moves:?}");
     }
 
