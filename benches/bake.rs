@@ -7,7 +7,7 @@ mod hall;
 #[path = "../tests/common/glb.rs"]
 mod glb;
 
-use bevy_kiln::bake::{BakeSettings, CancelToken, Denoise, Layout, Lightmap, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Denoise, Goal, Layout, Lightmap, bake_lightmap};
 use bevy_kiln::scene::Scene;
 use bevy_kiln::trace::{Estimator, Transport};
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
@@ -29,7 +29,7 @@ const REFERENCE_SAMPLES: u32 = 256;
 fn settings(estimator: Estimator, layout: Layout, samples_per_texel: u32) -> BakeSettings {
     BakeSettings {
         transport: Transport { estimator, ..Transport::default() },
-        samples_per_texel,
+        goal: Goal::Samples(samples_per_texel),
         density: 1.5,
         layout,
         denoise: Denoise::Off,

@@ -11,7 +11,7 @@ mod boxes;
 #[path = "../tests/common/glb.rs"]
 mod glb;
 
-use bevy_kiln::bake::{BakeSettings, CancelToken, Layout, Lightmap, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Goal, Layout, Lightmap, bake_lightmap};
 use bevy_kiln::scene::Scene;
 use bevy_kiln::trace::{Effect, EffectSet, ForcedEffects, Transport};
 use std::num::NonZeroUsize;
@@ -40,7 +40,7 @@ fn bake(case: &Case) -> Lightmap {
     let effects = ForcedEffects { on: case.on, ..ForcedEffects::default() };
     let settings = BakeSettings {
         transport: Transport { effects, ..Transport::default() },
-        samples_per_texel: SAMPLES_PER_TEXEL,
+        goal: Goal::Samples(SAMPLES_PER_TEXEL),
         layout: Layout::Shared { size: 96 },
         threads: NonZeroUsize::new(1),
         ..BakeSettings::default()

@@ -4,7 +4,7 @@
 
 mod common;
 
-use bevy_kiln::bake::{BakeSettings, CancelToken, MeterPoint, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Goal, MeterPoint, bake_lightmap};
 use bevy_kiln::math::{coaxial_disk, corner_parallel_rectangle, corner_perpendicular_rectangle};
 use bevy_kiln::scene::Scene;
 use bevy_kiln::trace::{Estimator, Transport};
@@ -157,7 +157,7 @@ fn a_rectangular_light_in_a_closed_room_balances() {
     // Mean over all surfaces: E·S·(1 − ρ) = Φ, whatever the shape (4³ m room, S = 96 m², Φ = π·L·A).
     let (albedo, radiance) = (0.7, 200.0);
     let truth = PI * f64::from(radiance) * 0.5 / (96.0 * (1.0 - f64::from(albedo)));
-    let settings = BakeSettings { samples_per_texel: 256, density: 4.0, ..BakeSettings::default() };
+    let settings = BakeSettings { goal: Goal::Samples(256), density: 4.0, ..BakeSettings::default() };
     let lightmap = bake_lightmap(&lit_room(albedo, radiance), &settings, &(), &CancelToken::default()).unwrap();
     let (mut sum, mut squares, mut count) = (0.0, 0.0, 0.0);
     for page in &lightmap.pages {

@@ -11,7 +11,7 @@ mod reference;
 #[path = "denoise/scenes.rs"]
 mod scenes;
 
-use bevy_kiln::bake::{BakeSettings, CancelToken, Denoise, Layout, Lightmap, Page, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Denoise, Goal, Layout, Lightmap, Page, bake_lightmap};
 use bevy_kiln::trace::Transport;
 use judge::{Error, Judge, blurred};
 use reference::Reference;
@@ -28,7 +28,7 @@ const BAKES: u64 = 5;
 
 fn bake(case: &Case, samples_per_texel: u32, denoise: Denoise, number: u64) -> Lightmap {
     let settings = BakeSettings {
-        samples_per_texel,
+        goal: Goal::Samples(samples_per_texel),
         layout: Layout::Shared { size: case.size },
         transport: Transport { seed: u64::from(samples_per_texel) + number, ..Transport::default() },
         denoise,

@@ -20,7 +20,7 @@ mod order;
 #[path = "determinism/vitrine.rs"]
 mod vitrine;
 
-use bevy_kiln::bake::{BakeSettings, CancelToken, Layout, Lightmap, Progress, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Goal, Layout, Lightmap, Progress, bake_lightmap};
 use bevy_kiln::scene::Scene;
 use common::glb;
 use fingerprint::Fingerprint;
@@ -29,7 +29,7 @@ use std::num::NonZeroUsize;
 /// A bake on so many threads.
 fn bake(scene: &Scene, threads: usize, layout: Layout) -> Lightmap {
     let settings = BakeSettings {
-        samples_per_texel: 32,
+        goal: Goal::Samples(32),
         density: 3.0,
         layout,
         threads: NonZeroUsize::new(threads),
@@ -41,7 +41,7 @@ fn bake(scene: &Scene, threads: usize, layout: Layout) -> Lightmap {
 #[test]
 fn another_seed_gives_other_bits() {
     let scene = glb::load("furnace");
-    let mut settings = BakeSettings { samples_per_texel: 16, density: 2.0, ..BakeSettings::default() };
+    let mut settings = BakeSettings { goal: Goal::Samples(16), density: 2.0, ..BakeSettings::default() };
     let first = bake_lightmap(&scene, &settings, &(), &CancelToken::default()).unwrap();
     settings.transport.seed = 1;
     let second = bake_lightmap(&scene, &settings, &(), &CancelToken::default()).unwrap();

@@ -3,7 +3,7 @@
 
 mod common;
 
-use bevy_kiln::bake::{BakeSettings, CancelToken, Lightmap, TexelState, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Goal, Lightmap, TexelState, bake_lightmap};
 use bevy_kiln::scene::{Material, Scene};
 use common::display::{Lookup, displayed_triangles, shown};
 use common::scenes::{SceneBuilder, grey};
@@ -100,7 +100,7 @@ fn bake(scene: &Scene, density: f32) -> Lightmap {
 }
 
 fn bake_with(scene: &Scene, density: f32, samples_per_texel: u32) -> Lightmap {
-    let settings = BakeSettings { density, samples_per_texel, ..BakeSettings::default() };
+    let settings = BakeSettings { density, goal: Goal::Samples(samples_per_texel), ..BakeSettings::default() };
     bake_lightmap(scene, &settings, &(), &CancelToken::default()).unwrap()
 }
 

@@ -116,7 +116,7 @@ fn count<C: Component>(world: &mut World) -> usize {
 fn small() -> BakeLightmaps {
     BakeLightmaps {
         scene: SceneSettings { emissive: EmissiveUnit::Nits, ..default() },
-        samples_per_texel: 16,
+        goal: BakeGoal::Samples(16),
         layout: LightmapLayout::Shared { size: 32 },
         format: LightmapFormat::Rgba16f,
         ..default()
@@ -170,7 +170,7 @@ fn a_trigger_becomes_lightmaps_on_entities() {
 fn cancelling_leaves_the_world_as_it_was() {
     let mut app = cornell(&data(""));
     let before = snapshot(app.world_mut());
-    app.world_mut().trigger(BakeLightmaps { samples_per_texel: 1 << 24, ..small() });
+    app.world_mut().trigger(BakeLightmaps { goal: BakeGoal::Samples(1 << 24), ..small() });
     app.update();
     // A second bake is refused while this one runs.
     app.world_mut().trigger(small());

@@ -3,7 +3,7 @@
 
 mod common;
 
-use bevy_kiln::bake::{BakeSettings, CancelToken, Layout, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Goal, Layout, bake_lightmap};
 use bevy_kiln::trace::Transport;
 use common::meter::read;
 use common::{glb, table};
@@ -70,7 +70,7 @@ fn cornell_box() {
 fn cornell_box_map() {
     let reference = Map::read("cornell_256_irradiance.exr");
     let settings = BakeSettings {
-        samples_per_texel: 256,
+        goal: Goal::Samples(256),
         layout: Layout::Shared { size: SIZE as u32 },
         ..BakeSettings::default()
     };

@@ -2,7 +2,7 @@
 
 mod common;
 
-use bevy_kiln::bake::{BakeSettings, CancelToken, Lightmap, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Goal, Lightmap, bake_lightmap};
 use bevy_kiln::scene::{Indices, Scene, Topology};
 use bevy_kiln::trace::Transport;
 use common::meter::{at, read};
@@ -39,7 +39,7 @@ fn replaced(scene: &Scene, world_from_local: Affine3A) -> Scene {
 }
 
 fn bake(scene: &Scene, density: f32) -> Lightmap {
-    let settings = BakeSettings { samples_per_texel: 64, density, ..BakeSettings::default() };
+    let settings = BakeSettings { goal: Goal::Samples(64), density, ..BakeSettings::default() };
     bake_lightmap(scene, &settings, &(), &CancelToken::default()).unwrap()
 }
 
@@ -150,7 +150,7 @@ fn overlapping_and_vanishing_uv1_are_named() {
         *uv = uv.with_y(0.5 + 1e-7 * uv.y);
     }
     let settings = BakeSettings {
-        samples_per_texel: 16,
+        goal: Goal::Samples(16),
         layout: bevy_kiln::bake::Layout::Shared { size: 64 },
         ..BakeSettings::default()
     };

@@ -5,7 +5,7 @@ use crate::naive::{FYROX_BIAS, GODOT_BIAS};
 use crate::numbers::Numbers;
 use crate::scenes::{Stage, askew, in_f64};
 use crate::sweep::{Axis, Curve, Effort, Side, Sweep, rms_error};
-use bevy_kiln::bake::{BakeSettings, CancelToken, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Goal, bake_lightmap};
 use bevy_kiln::math::{Frame, parallel_rectangles, square_to_cosine_hemisphere};
 use bevy_kiln::scene::{Material, Scene};
 use bevy_kiln::trace::{Tracer, Transport};
@@ -80,7 +80,7 @@ fn plates(gap: f32) -> Scene {
 fn ours(scene: &Scene, samples_per_texel: u32, seed: u64) -> f64 {
     let settings = BakeSettings {
         transport: Transport { seed, ..Transport::default() },
-        samples_per_texel,
+        goal: Goal::Samples(samples_per_texel),
         density: TEXELS as f32,
         threads: NonZeroUsize::new(1),
         ..BakeSettings::default()

@@ -63,7 +63,7 @@ fn keys(
 /// Asks for a bake; the game runs on.
 pub fn start(args: &Args, status: &mut Status, commands: &mut Commands) {
     let scene = SceneSettings { sky_radiance: args.stage.sky.into(), ..default() };
-    commands.trigger(BakeLightmaps { scene, samples_per_texel: args.spp, density: args.density, ..default() });
+    commands.trigger(BakeLightmaps { scene, goal: BakeGoal::Samples(args.spp), density: args.density, ..default() });
     *status = Status::Baking(None);
 }
 

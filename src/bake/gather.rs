@@ -4,20 +4,17 @@
 //! their mean. The paths of an estimate are therefore dealt to [`REPLICATES`] runs with scrambles of their own; the
 //! runs' means are independent and equally distributed, and their spread is the standard error (Owen 1997).
 
+mod runs;
+
+pub(super) use runs::Runs;
+
 use super::{CancelToken, RelativeError};
-use crate::math::combine;
-use crate::math::luminance;
+use crate::math::{combine, luminance};
 use crate::trace::{Sobol, Tally};
 use glam::{DVec3, Vec3};
 
 /// How many independently scrambled runs share the paths of each estimate; their spread is its standard error.
 pub const REPLICATES: u32 = 16;
-
-/// How many starts may be refused for each one that is wanted, before a path starts wherever it can.
-const PATIENCE: u64 = 8;
-
-/// Paths between two looks at the cancel switch.
-const CANCEL_INTERVAL: u64 = 64;
 
 /// What a random number is for: keys of different kinds never meet.
 #[derive(Clone, Copy, Debug)]
@@ -74,6 +71,8 @@ pub(super) struct Estimate {
     pub(super) not_light: u64,
     /// Paths that were cut because nothing ended them.
     pub(super) endless: u64,
+    /// Half the width of the interval of luminance that holds the truth in 95 of 100 cases [cd/m²].
+    pub(super) half_width: f64,
 }
 
 impl Estimate {
@@ -83,77 +82,15 @@ impl Estimate {
         cancel: &CancelToken,
         mut path: impl FnMut(&Sobol, &mut Tally) -> Vec3,
     ) -> Option<Self> {
-        Self::gather_accepted(paths, cancel, |sobol, _, tally| Some(path(sobol, tally)))
-    }
-
-    /// The same where a path may be refused, for the mean over those that are not. Once too many have been refused
-    /// `path` is asked for what cannot be ([`Start::Anywhere`]).
-    pub(super) fn gather_accepted(
-        paths: Paths,
-        cancel: &CancelToken,
-        mut path: impl FnMut(&Sobol, Start, &mut Tally) -> Option<Vec3>,
-    ) -> Option<Self> {
-        let per_replicate = u64::from(paths.count.div_ceil(REPLICATES));
-        let mut tally = Tally::default();
-        let (mut taken, mut not_light, mut tries) = (0.0, 0, 0);
-        let mut means = [DVec3::ZERO; REPLICATES as usize];
-        for (replicate, mean) in means.iter_mut().enumerate() {
-            let key = combine(paths.key, replicate as u64);
-            let mut sum = DVec3::ZERO;
-            let (mut accepted, mut index) = (0, 0);
-            while accepted < per_replicate {
-                if index % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {
-                    return None;
-                }
-                let start = if index < PATIENCE * per_replicate { Start::Drawn } else { Start::Anywhere };
-                let value = path(&Sobol::new(key, index), start, &mut tally);
-                index += 1;
-                let Some(value) = value else { continue };
-                accepted += 1;
-                if !is_light(value) {
-                    not_light += 1;
-                    continue;
-                }
-                let kept = clamped(value, paths.clamp);
-                taken += luminance(value - kept);
-                sum += kept.as_dvec3();
-            }
-            tries += index;
-            *mean = sum / per_replicate as f64;
-        }
-        let count = f64::from(REPLICATES);
-        let mean = means.iter().sum::<DVec3>() / count;
-        let squares: DVec3 = means.iter().map(|&value| (value - mean) * (value - mean)).sum();
-        let variance_of_mean = squares / (count * (count - 1.0));
-        let stderr = DVec3::from(variance_of_mean.to_array().map(f64::sqrt));
-        let off = |&value: &DVec3| luminance(value - mean);
-        let luminance_error =
-            (means.iter().map(|value| off(value).powi(2)).sum::<f64>() / (count * (count - 1.0))).sqrt();
-        let half = means.iter().step_by(2).sum::<DVec3>() / (0.5 * count);
-        let samples = per_replicate * u64::from(REPLICATES);
-        let Tally { rays, endless, .. } = tally;
-        let clamped = taken / samples as f64;
-        let accepted = samples as f64 / tries as f64;
-        Some(Self { mean, stderr, luminance_error, half, samples, rays, accepted, clamped, not_light, endless })
+        let mut runs = Runs::new(paths.key, paths.clamp);
+        runs.extend(paths.count, cancel, |sobol, _, tally| Some(path(sobol, tally)))?;
+        Some(runs.estimate())
     }
 
     /// Standard error over value, by luminance; `None` for a black estimate.
     pub(super) fn relative_stderr(&self) -> Option<f64> {
         let value = luminance(self.mean);
         (value > 0.0).then(|| self.luminance_error / value)
-    }
-}
-
-/// Whether a path's value can be light: one that is not would spoil the mean of all.
-fn is_light(value: Vec3) -> bool {
-    value.is_finite() && value.min_element() >= 0.0
-}
-
-/// A value with its hue and, in its strongest channel, at most `limit`.
-fn clamped(value: Vec3, limit: Option<f32>) -> Vec3 {
-    match limit {
-        Some(limit) if value.max_element() > limit => value * (limit / value.max_element()),
-        _ => value,
     }
 }
 
@@ -171,20 +108,8 @@ pub(super) fn relative_error(estimates: &[Estimate]) -> RelativeError {
         return RelativeError::default();
     }
     let mean = estimates.iter().map(|estimate| luminance(estimate.mean)).sum::<f64>() / estimates.len() as f64;
-    let mut errors: Vec<f64> = estimates
-        .iter()
-        .filter(|estimate| luminance(estimate.mean) > 1e-3 * mean)
-        .filter_map(Estimate::relative_stderr)
-        .collect();
-    if errors.is_empty() {
-        return RelativeError::default();
-    }
-    errors.sort_by(f64::total_cmp);
-    RelativeError {
-        mean: errors.iter().sum::<f64>() / errors.len() as f64,
-        p95: errors[(errors.len() - 1) * 95 / 100],
-        max: errors[errors.len() - 1],
-    }
+    let lit = estimates.iter().filter(|estimate| luminance(estimate.mean) > 1e-3 * mean);
+    RelativeError::of(lit.filter_map(Estimate::relative_stderr).collect())
 }
 
 #[cfg(test)]

@@ -7,12 +7,14 @@ use super::gather::Estimate;
 use super::layout::placements;
 use super::repair::{DisplayedRect, Field, Filtering, Repairs, Surroundings, TexelState, repair};
 use super::sites::{Covered, Site, Sites};
+use super::survey::{Survey, Surveyed};
+use super::tiles::{ErrorTarget, Tile, Until, tiles};
 use super::unwrap::{LaidOut, LaidOutMesh};
-use super::workers::Workers;
-use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, ProgressSink, Stage};
+use super::workers::{Work, Workers};
+use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, Goal, Intervals, ProgressSink, Stage};
 use crate::artefact::StableId;
 use crate::scene::{Fault, Light, Scene};
-use crate::trace::{Compiled, Tracer, effect_of};
+use crate::trace::{Compiled, Tracer, Transport, effect_of};
 use glam::{DVec3, Vec2, Vec3};
 use std::time::Instant;
 
@@ -47,6 +49,12 @@ pub struct Page {
     pub raw: Vec<Vec3>,
     /// Standard error of `raw` [cd/m²].
     pub stderr: Vec<Vec3>,
+    /// Half the width of the interval around the luminance of `raw` that holds the truth in 95 of 100 cases [cd/m²].
+    pub half_width: Vec<f32>,
+    /// Paths that started from it.
+    pub samples: Vec<u32>,
+    /// Rays that these took: what it cost.
+    pub rays: Vec<u64>,
     /// What each texel is.
     pub state: Vec<TexelState>,
     /// One more than the number of its chart in the bake; 0 where no triangle covers it.
@@ -96,11 +104,9 @@ pub fn bake_lightmap(
     let atlas = Atlas::new(&laid_out, &tracer, settings, cancel)?;
     let Sites { seen: sites, hidden, warnings: of_uv1 } = Sites::new(scene, &tracer, &atlas, settings, &workers)?;
     refuse_endless_texels(scene, &tracer, &settings.transport, &sites)?;
-    let work = workers.gather(
-        &sites,
-        |site, cancel| site.estimate(&tracer, settings.samples_per_texel, &settings.transport, cancel),
-        Estimate::relative_stderr,
-    )?;
+    let tiles = tiles(&sites);
+    let until = until(settings, &Surveyed { tiles: &tiles, sites: &sites, tracer: &tracer }, &workers, clock)?;
+    let work = measure(&tiles, &sites, &tracer, until, &settings.transport, &workers)?;
     let balance = energy_balance(&tracer, &sites, &work.results, &settings.transport, &workers)?;
     workers.announce(Stage::Repair)?;
     let mut fields = fields(&atlas, &sites, &work.results, &hidden);
@@ -118,6 +124,7 @@ pub fn bake_lightmap(
         unwrapped: laid_out.mesh_of.len() as u64,
         denoised,
         seams,
+        intervals: Intervals::of(&work.results, until),
         ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings)
     };
     let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));
@@ -126,6 +133,42 @@ pub fn bake_lightmap(
     baked_lights.sort();
     let placements = placements(&laid_out, &atlas);
     Ok(Lightmap { placements, pages, meshes: laid_out.meshes, baked_lights, report })
+}
+
+/// What the goal comes down to in this scene.
+fn until(
+    settings: &BakeSettings,
+    surveyed: &Surveyed<'_>,
+    workers: &Workers<'_>,
+    clock: Instant,
+) -> Result<Until, BakeError> {
+    let target = |survey: &Survey, relative| Until::Error(ErrorTarget { relative, floor: survey.floor() });
+    Ok(match settings.goal {
+        Goal::Samples(count) => Until::Samples(count),
+        Goal::Error(error) => target(&surveyed.survey(&settings.transport, workers)?, error),
+        Goal::Time(time) => {
+            let survey = surveyed.survey(&settings.transport, workers)?;
+            let left = time.saturating_sub(clock.elapsed());
+            target(&survey, survey.error_within(left.as_secs_f64()))
+        }
+    })
+}
+
+/// Measures all texels; the results are in the order of the sites.
+fn measure(
+    tiles: &[Tile],
+    sites: &[Site],
+    tracer: &Tracer,
+    until: Until,
+    transport: &Transport,
+    workers: &Workers<'_>,
+) -> Result<Work<Estimate>, BakeError> {
+    let of_tile = |tile: &Tile, cancel: &CancelToken| tile.measure(sites, tracer, until, transport, cancel);
+    let Work { results, cpu } = workers.gather_groups(tiles, sites.len(), of_tile, Estimate::relative_stderr)?;
+    let mut in_order = vec![Estimate::default(); sites.len()];
+    let numbers = tiles.iter().flat_map(|tile| &tile.sites);
+    numbers.zip(results).for_each(|(&number, estimate)| in_order[number as usize] = estimate);
+    Ok(Work { results: in_order, cpu })
 }
 
 /// The pages as measured.
@@ -152,6 +195,9 @@ fn pages(fields: Vec<Field>, sites: &[Site], estimates: &[Estimate]) -> Vec<Page
             coverage: vec![0.0; count],
             raw: vec![Vec3::ZERO; count],
             stderr: field.stderr,
+            half_width: vec![0.0; count],
+            samples: vec![0; count],
+            rays: vec![0; count],
             density: vec![0.0; count],
             is_overlapped: vec![false; count],
             chart: field.state.iter().zip(field.chart).map(chart).collect(),
@@ -163,6 +209,9 @@ fn pages(fields: Vec<Field>, sites: &[Site], estimates: &[Estimate]) -> Vec<Page
         let page = &mut pages[covered.page as usize];
         page.coverage[covered.index as usize] = (covered.texel.coverage.min(1.0) * estimate.accepted) as f32;
         page.raw[covered.index as usize] = estimate.mean.as_vec3();
+        page.half_width[covered.index as usize] = estimate.half_width as f32;
+        page.samples[covered.index as usize] = estimate.samples.try_into().unwrap_or(u32::MAX);
+        page.rays[covered.index as usize] = estimate.rays;
         page.density[covered.index as usize] = covered.texel.density();
         page.is_overlapped[covered.index as usize] = covered.is_overlapped;
     }

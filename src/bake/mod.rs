@@ -6,8 +6,8 @@
 //!    out and named;
 //! 2. `atlas` gives every object its rectangle of texels;
 //! 3. `raster` finds the texels that each triangle covers, however little of them, and `sites` lists them;
-//! 4. `gather` traces paths from the covered part of each texel, in parallel, in independently scrambled replicates
-//!    whose spread is the texel's standard error;
+//! 4. `tiles` samples texels until each is known well enough; `gather` traces the paths from the covered part of one, in
+//!    independently scrambled replicates whose spread is its standard error; `survey` says beforehand what that takes;
 //! 5. `repair` takes out the noise, keeps light from crossing walls, fills the texels beside the charts that texture
 //!    filtering also reads, and mends seams.
 //!
@@ -19,6 +19,7 @@ mod charts;
 mod endless;
 mod error;
 mod gather;
+mod goal;
 mod layout;
 mod lightmap;
 mod meter;
@@ -30,13 +31,16 @@ mod repair;
 mod report;
 mod settings;
 mod sites;
+mod survey;
 mod texel;
+mod tiles;
 mod unwrap;
 mod validity;
 mod workers;
 
 pub use error::{BakeError, BakeWarning};
 pub use gather::REPLICATES;
+pub use goal::{DARK, Goal};
 pub use layout::{TexelLayout, unwrap_meshes};
 pub use lightmap::{Lightmap, Page, Placement, bake_lightmap};
 pub use meter::{Measurement, MeterPoint, MeterReading, MeterSettings, measure_irradiance};
@@ -44,6 +48,6 @@ pub use picture::{Picture, PictureSettings, render_picture};
 pub use plan::{BakePlan, PlannedEffect, Prediction};
 pub use progress::{CancelToken, Progress, ProgressSink, Stage};
 pub use repair::{Filtering, TexelState};
-pub use report::{BakeReport, Denoised, Jump, RelativeError, SeamReport};
+pub use report::{BakeReport, Denoised, Intervals, Jump, RelativeError, SeamReport};
 pub use settings::{BakeSettings, Denoise, Layout};
 pub use unwrap::{LaidOutMesh, UnwrapMethod, Uv1Fault};

@@ -7,6 +7,8 @@ use super::atlas::Atlas;
 use super::endless::refuse_endless_texels;
 use super::lightmap::refuse_what_cannot_be_baked;
 use super::sites::{Site, Sites};
+use super::survey::Surveyed;
+use super::tiles::tiles;
 use super::unwrap::LaidOut;
 use super::workers::Workers;
 use super::{BakeError, BakeSettings, BakeWarning, CancelToken};
@@ -32,7 +34,7 @@ pub struct PlannedEffect {
 /// The price of an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prediction {
-    /// Mean over the texels of the half-width of the 95 % interval, over the value.
+    /// The error of every texel, as [`Goal::Error`](super::Goal::Error) has it.
     pub error: f64,
     /// Time that tracing to it would take [s].
     pub seconds: f64,
@@ -80,6 +82,9 @@ impl BakePlan {
         warnings.extend(BakeWarning::of_transport(&settings.transport, &census));
         let pilot = Pilot::new(&sites, settings, &workers);
         let shares = pilot.cost_shares(scene, &tracer)?;
+        let tiles = tiles(&sites);
+        let surveyed = Surveyed { tiles: &tiles, sites: &sites, tracer: &tracer };
+        let survey = surveyed.survey(&settings.transport, &workers)?;
         let plan_effect = |effect| PlannedEffect {
             effect,
             on: tracer.effects().has(effect),
@@ -91,7 +96,7 @@ impl BakePlan {
             texels: sites.len() as u64,
             pages: atlas.pages.len() as u32,
             memory_bytes: memory_bytes(&tracer, &atlas, &sites),
-            predicted: pilot.predict(&tracer)?,
+            predicted: survey.prices(),
             warnings,
         })
     }

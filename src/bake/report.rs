@@ -1,8 +1,10 @@
 //! What a bake did, in numbers.
 
-use super::BakeWarning;
 use super::gather::{Estimate, clamped_share, relative_error};
+use super::tiles::{ErrorTarget, Until};
 use super::workers::Work;
+use super::{BakeWarning, DARK};
+use crate::math::luminance;
 use crate::trace::{ForcedEffects, Transport};
 use std::time::Duration;
 
@@ -23,6 +25,8 @@ pub struct BakeReport {
     pub wall_seconds: f64,
     /// Standard error over value, by luminance.
     pub relative_stderr: RelativeError,
+    /// How well texels are known, before repair.
+    pub intervals: Intervals,
     /// What the denoiser did; `None` where it was off.
     pub denoised: Option<Denoised>,
     /// Absorbed over emitted flux; `None` for a scene from which light escapes, whose sky shines, or whose surfaces
@@ -55,6 +59,53 @@ pub struct RelativeError {
     pub p95: f64,
     /// Worst.
     pub max: f64,
+}
+
+/// Half the width of the interval of luminance that holds the truth in 95 of 100 cases, over the value or, of what is
+/// darker, over a floor.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Intervals {
+    /// What was asked for, or found to be possible in the time that was asked for; `None` where paths were.
+    pub target: Option<f64>,
+    /// The floor: [`DARK`](super::DARK) of the mean over all texels [cd/m²].
+    pub floor: f64,
+    /// Of all texels, dark ones too.
+    pub half_width: RelativeError,
+    /// Texels that got as many paths as one may have and yet are not known so well.
+    pub missed: u64,
+}
+
+impl Intervals {
+    pub(super) fn of(estimates: &[Estimate], until: Until) -> Self {
+        let mean =
+            |of: &dyn Fn(&Estimate) -> f64| estimates.iter().map(of).sum::<f64>() / estimates.len().max(1) as f64;
+        let target = match until {
+            Until::Error(target) => target,
+            Until::Samples(_) => {
+                ErrorTarget { relative: f64::INFINITY, floor: DARK * mean(&|estimate| luminance(estimate.mean)) }
+            }
+        };
+        let width = |estimate: &Estimate| {
+            let value = target.value(estimate);
+            if value > 0.0 { estimate.half_width / value } else { 0.0 }
+        };
+        let missed = estimates.iter().filter(|estimate| !target.is_met(estimate)).count() as u64;
+        Self {
+            target: target.relative.is_finite().then_some(target.relative),
+            floor: target.floor,
+            half_width: RelativeError::of(estimates.iter().map(width).collect()),
+            missed,
+        }
+    }
+}
+
+impl RelativeError {
+    /// Of all errors.
+    pub(super) fn of(mut errors: Vec<f64>) -> Self {
+        errors.sort_unstable_by(f64::total_cmp);
+        let Some(last) = errors.len().checked_sub(1) else { return Self::default() };
+        Self { mean: errors.iter().sum::<f64>() / errors.len() as f64, p95: errors[last * 95 / 100], max: errors[last] }
+    }
 }
 
 /// Standard error over value before and after denoising, as estimated from the texels themselves.
@@ -116,6 +167,7 @@ impl BakeReport {
             cpu_seconds: work.cpu.as_secs_f64(),
             wall_seconds: wall.as_secs_f64(),
             relative_stderr: relative_error(&work.results),
+            intervals: Intervals::default(),
             denoised: None,
             energy_balance: None,
             clamped_light: clamped_share(&work.results, transport.clamp),

@@ -1,6 +1,6 @@
 //! What a bake is asked for.
 
-use super::BakeError;
+use super::{BakeError, Goal};
 use crate::trace::Transport;
 use std::num::NonZeroUsize;
 
@@ -40,8 +40,8 @@ pub enum Denoise {
 pub struct BakeSettings {
     /// How light is followed.
     pub transport: Transport,
-    /// Paths that start in each texel; rounded up to a multiple of [`REPLICATES`](super::REPLICATES).
-    pub samples_per_texel: u32,
+    /// When a texel has been sampled enough.
+    pub goal: Goal,
     /// Texels per metre of surface where an object asks for nothing else; for [`Layout::Packed`].
     pub density: f32,
     /// Where the texels go.
@@ -59,7 +59,7 @@ impl Default for BakeSettings {
     fn default() -> Self {
         Self {
             transport: Transport::default(),
-            samples_per_texel: 256,
+            goal: Goal::default(),
             density: 16.0,
             layout: Layout::default(),
             max_page_size: *PAGE_SIZES.end(),
@@ -73,9 +73,7 @@ impl BakeSettings {
     /// Refuses settings that cannot be met.
     pub fn validate(&self) -> Result<(), BakeError> {
         let refuse = |setting, reason: &str| Err(BakeError::Settings { setting, reason: reason.to_owned() });
-        if self.samples_per_texel == 0 {
-            return refuse("spp", "a texel needs at least one path; ask for 1 or more");
-        }
+        self.goal.validate()?;
         if !(self.density.is_finite() && self.density > 0.0) {
             return refuse("density", "it must be a positive number of texels per metre");
         }

@@ -2,7 +2,7 @@
 
 use super::atlas::{Atlas, Chart};
 use super::charts::Charts;
-use super::gather::{Estimate, KeyKind, Paths, Start, key};
+use super::gather::{Estimate, KeyKind, Runs, Start, key};
 use super::raster::{Fragment, MIN_COVERAGE, covered_texels};
 use super::texel::Texel;
 use super::validity::{Footing, footings};
@@ -18,6 +18,10 @@ pub(super) struct Covered {
     pub(super) page: u32,
     /// Row by row within the page.
     pub(super) index: u32,
+    /// The object whose rectangle it is in, or 0 on a map that all objects share.
+    pub(super) receiver: u32,
+    /// Column and row in that rectangle.
+    pub(super) place: [u32; 2],
     /// The chart that it is part of.
     pub(super) chart: u32,
     pub(super) texel: Texel,
@@ -62,10 +66,26 @@ impl Site {
         transport: &Transport,
         cancel: &CancelToken,
     ) -> Option<Estimate> {
-        let paths = Paths { key: self.covered.key, count, clamp: transport.clamp };
-        Estimate::gather_accepted(paths, cancel, |sobol, start, tally| {
-            self.sample(tracer, sobol, start, transport, tally)
-        })
+        let mut runs = self.runs(transport);
+        self.carry_on(&mut runs, tracer, count, transport, cancel)?;
+        Some(runs.estimate())
+    }
+
+    /// The runs of its estimate, before any path.
+    pub(super) fn runs(&self, transport: &Transport) -> Runs {
+        Runs::new(self.covered.key, transport.clamp)
+    }
+
+    /// Carries them on until there are so many paths; `None` if cancelled.
+    pub(super) fn carry_on(
+        &self,
+        runs: &mut Runs,
+        tracer: &Tracer,
+        count: u32,
+        transport: &Transport,
+        cancel: &CancelToken,
+    ) -> Option<()> {
+        runs.extend(count, cancel, |sobol, start, tally| self.sample(tracer, sobol, start, transport, tally))
     }
 
     /// Memory that it holds, its estimate included [bytes].
@@ -142,7 +162,9 @@ fn covered(
                 *overlapping.entry(subject(rectangle)).or_default() += 1;
             }
             let key = site_key(scene, rectangle, place, index, settings);
-            all.push(Covered { page, index, chart: group[0].chart, texel, is_overlapped, key });
+            let receiver = if settings.layout == Layout::Packed { group[0].receiver } else { 0 };
+            let place = [0, 1].map(|axis| place[axis] - rectangle.origin[axis]);
+            all.push(Covered { page, index, receiver, place, chart: group[0].chart, texel, is_overlapped, key });
         }
     }
     let overlapping = overlapping.into_iter().map(|(subject, texels)| BakeWarning::OverlappingUv1 { subject, texels });

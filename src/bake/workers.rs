@@ -63,16 +63,30 @@ impl<'a> Workers<'a> {
         work: impl Fn(&I, &CancelToken) -> Option<T> + Sync,
         error: impl Fn(&T) -> Option<f64> + Sync,
     ) -> Result<Work<T>, BakeError> {
+        let chunk = (items.len() / (TURNS * self.pool.current_num_threads())).clamp(1, LARGEST_CHUNK);
+        let chunks: Vec<&[I]> = items.chunks(chunk).collect();
+        let of_chunk = |chunk: &&[I], cancel: &CancelToken| chunk.iter().map(|item| work(item, cancel)).collect();
+        self.gather_groups(&chunks, items.len(), of_chunk, error)
+    }
+
+    /// The same for groups of items, of which there are `total`: `work` makes one result for each item of a group.
+    pub(super) fn gather_groups<G: Sync, T: Send>(
+        &self,
+        groups: &[G],
+        total: usize,
+        work: impl Fn(&G, &CancelToken) -> Option<Vec<T>> + Sync,
+        error: impl Fn(&T) -> Option<f64> + Sync,
+    ) -> Result<Work<T>, BakeError> {
         let tally = Mutex::new(Tally::default());
-        let chunk_of = |chunk: &[I]| -> Option<Vec<T>> {
+        let of_group = |group: &G| -> Option<Vec<T>> {
             let clock = ThreadTime::now();
-            let results: Vec<T> = chunk.iter().map(|item| work(item, self.cancel)).collect::<Option<Vec<T>>>()?;
-            self.tell(&tally, items.len(), &results, clock.elapsed(), &error);
+            let results = work(group, self.cancel)?;
+            self.tell(&tally, total, &results, clock.elapsed(), &error);
             Some(results)
         };
-        let chunk = (items.len() / (TURNS * self.pool.current_num_threads())).clamp(1, LARGEST_CHUNK);
-        let chunks: Option<Vec<Vec<T>>> = self.pool.install(|| items.par_chunks(chunk).map(chunk_of).collect());
-        let results = chunks.ok_or(BakeError::Cancelled)?.into_iter().flatten().collect();
+        let of_groups: Option<Vec<Vec<T>>> =
+            self.pool.install(|| groups.par_iter().with_max_len(1).map(of_group).collect());
+        let results = of_groups.ok_or(BakeError::Cancelled)?.into_iter().flatten().collect();
         let cpu = tally.lock().map_or(Duration::ZERO, |tally| tally.cpu);
         Ok(Work { results, cpu })
     }

@@ -6,7 +6,7 @@ use crate::common::garden::garden;
 use crate::common::glb;
 use crate::fingerprint::Fingerprint;
 use crate::vitrine::vitrine;
-use bevy_kiln::bake::{BakeSettings, CancelToken, Layout, Lightmap, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Goal, Layout, Lightmap, bake_lightmap};
 use bevy_kiln::scene::Scene;
 use std::num::NonZeroUsize;
 
@@ -35,7 +35,7 @@ pub const HELD: [Held; 3] = [
 impl Held {
     pub fn bake(&self, threads: usize) -> Lightmap {
         let settings = BakeSettings {
-            samples_per_texel: 128,
+            goal: Goal::Samples(128),
             density: self.density,
             layout: self.layout,
             threads: NonZeroUsize::new(threads),

@@ -7,8 +7,8 @@ use crate::fingerprint::{Fingerprint, assert_same};
 use crate::vitrine::vitrine;
 use crate::{bake, common};
 use bevy_kiln::bake::{
-    BakeSettings, CancelToken, Layout, Lightmap, MeterPoint, MeterReading, MeterSettings, Progress, bake_lightmap,
-    measure_irradiance,
+    BakeSettings, CancelToken, Goal, Layout, Lightmap, MeterPoint, MeterReading, MeterSettings, Progress,
+    bake_lightmap, measure_irradiance,
 };
 use bevy_kiln::scene::Scene;
 use bevy_kiln::trace::Transport;
@@ -91,7 +91,7 @@ fn shuffled_meshes_materials_instances_and_lights() {
 fn threads_that_are_held_up() {
     let scene = vitrine();
     let settings = |threads| BakeSettings {
-        samples_per_texel: 16,
+        goal: Goal::Samples(16),
         density: 3.0,
         threads: NonZeroUsize::new(threads),
         ..BakeSettings::default()

@@ -5,7 +5,7 @@ use crate::Fault;
 use crate::chance::{Search, finds, holds};
 use crate::judge::{Mean, settle};
 use crate::sketch::{INDOORS, Kind, Shell, Sketch, sketches};
-use bevy_kiln::bake::{BakeSettings, CancelToken, Lightmap, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Goal, Lightmap, bake_lightmap};
 use bevy_kiln::math::Welford;
 use bevy_kiln::scene::{Instance, Scene};
 use bevy_kiln::trace::Transport;
@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 const SEEDS: u64 = 4;
 
 fn bake(scene: &Scene, samples: u32, transport: Transport) -> Lightmap {
-    let settings = BakeSettings { transport, samples_per_texel: samples, density: 1.5, ..BakeSettings::default() };
+    let settings = BakeSettings { transport, goal: Goal::Samples(samples), density: 1.5, ..BakeSettings::default() };
     bake_lightmap(scene, &settings, &(), &CancelToken::default()).unwrap()
 }
 

@@ -8,7 +8,7 @@ use crate::common::meter::read;
 use crate::judge::{Mean, same, settle};
 use crate::sketch::{ALL, INDOORS, Shell, Sketch, sketches};
 use bevy_kiln::artefact::StableId;
-use bevy_kiln::bake::{BakeSettings, CancelToken, Lightmap, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Goal, Lightmap, bake_lightmap};
 use bevy_kiln::scene::{Indices, LightmapRequest, Mesh, Scene};
 use bevy_kiln::trace::Transport;
 use glam::{Vec2, Vec3};
@@ -130,7 +130,7 @@ fn bake(scene: &Scene, samples: u32, seed: u64) -> Lightmap {
     }
     // A clamp that nothing reaches spares the energy balance, which takes longer than such a bake.
     let transport = Transport { seed, clamp: Some(1e30), ..Transport::default() };
-    let settings = BakeSettings { samples_per_texel: samples, density: 1.5, transport, ..BakeSettings::default() };
+    let settings = BakeSettings { goal: Goal::Samples(samples), density: 1.5, transport, ..BakeSettings::default() };
     bake_lightmap(&scene, &settings, &(), &CancelToken::default()).unwrap()
 }
 

@@ -7,14 +7,14 @@ use crate::common::statistics::Random;
 use crate::judge::{Mean, settle};
 use crate::sketch::{ALL, INDOORS, Kind, Shell, Sketch, sketches};
 use bevy_kiln::artefact::StableId;
-use bevy_kiln::bake::{BakeSettings, CancelToken, Lightmap, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Goal, Lightmap, bake_lightmap};
 use bevy_kiln::scene::{Light, Scene};
 use bevy_kiln::trace::Transport;
 
 fn bake(scene: &Scene, samples: u32) -> Lightmap {
     // A clamp that nothing reaches spares the energy balance, which takes longer than such a bake.
     let transport = Transport { clamp: Some(1e30), ..Transport::default() };
-    let settings = BakeSettings { samples_per_texel: samples, density: 1.5, transport, ..BakeSettings::default() };
+    let settings = BakeSettings { goal: Goal::Samples(samples), density: 1.5, transport, ..BakeSettings::default() };
     bake_lightmap(scene, &settings, &(), &CancelToken::default()).unwrap()
 }
 

@@ -5,7 +5,7 @@ use crate::Fault;
 use crate::chance::{Search, finds, holds};
 use crate::common::scenes::{SceneBuilder, glowing, grey};
 use crate::judge::{Mean, settle};
-use bevy_kiln::bake::{BakeSettings, CancelToken, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Goal, bake_lightmap};
 use bevy_kiln::scene::LightmapRequest;
 use bevy_kiln::trace::Transport;
 use glam::Vec3;
@@ -76,7 +76,7 @@ impl Pair {
                 .map(|_| LightmapRequest { density: Some(TEXELS / longest) });
         }
         let transport = Transport { seed: receiver as u64, ..Transport::default() };
-        let settings = BakeSettings { transport, samples_per_texel: samples, ..BakeSettings::default() };
+        let settings = BakeSettings { transport, goal: Goal::Samples(samples), ..BakeSettings::default() };
         let lightmap = bake_lightmap(&scene, &settings, &(), &CancelToken::default()).unwrap();
         let page = &lightmap.pages[0];
         let covered: Vec<usize> = (0..page.raw.len()).filter(|&index| page.coverage[index] > 0.0).collect();

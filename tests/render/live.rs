@@ -61,7 +61,7 @@ fn spawn(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, mut materials
 fn bake_sky(app: &mut App, sky_radiance: Vec3, density: f32) {
     let scene = SceneSettings { sky_radiance, ..default() };
     let format = LightmapFormat::Rgba16f;
-    bake(app, BakeLightmaps { scene, samples_per_texel: 16, density, format, ..default() });
+    bake(app, BakeLightmaps { scene, goal: BakeGoal::Samples(16), density, format, ..default() });
 }
 
 fn check(app: &App, when: &str, texel: Vec3) {

@@ -23,7 +23,7 @@ use verdict::compare;
 fn direct() -> BakeLightmaps {
     BakeLightmaps {
         scene: SceneSettings { emissive: EmissiveUnit::AsDisplayed { ev100: 0.0 }, ..default() },
-        samples_per_texel: 1024,
+        goal: BakeGoal::Samples(1024),
         density: 12.0,
         max_bounces: Some(0),
         format: LightmapFormat::Rgba16f,

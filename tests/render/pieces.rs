@@ -216,7 +216,7 @@ fn pictures(app: &mut App, pieces: &[[f32; 4]]) -> [Vec<f64>; 2] {
     }
     app.insert_resource(LightmapFiltering::Bilinear);
     let format = LightmapFormat::Rgba16f;
-    let done = bake(app, BakeLightmaps { samples_per_texel: 512, density: 16.0, format, ..default() });
+    let done = bake(app, BakeLightmaps { goal: BakeGoal::Samples(512), density: 16.0, format, ..default() });
     assert_eq!((done.entities, done.warnings), (pieces.len(), vec![]));
     let bilinear = picture(app);
     app.insert_resource(LightmapFiltering::Bicubic);

@@ -1,7 +1,7 @@
 //! What must hold of a finished lightmap: how far apart the two sides of a seam are shown, found by comparing every
 //! edge with every other.
 
-use bevy_kiln::bake::{BakeSettings, CancelToken, Filtering, Lightmap, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Filtering, Goal, Lightmap, bake_lightmap};
 use bevy_kiln::scene::{Indices, Mesh, Scene};
 use glam::{Vec2, Vec3};
 use std::num::NonZeroUsize;
@@ -173,7 +173,7 @@ pub fn worst_jump(scene: &Scene, lightmap: &Lightmap, pairs: &[Pair]) -> f32 {
 }
 
 pub fn settings(density: f32, samples: u32) -> BakeSettings {
-    BakeSettings { density, samples_per_texel: samples, ..BakeSettings::default() }
+    BakeSettings { density, goal: Goal::Samples(samples), ..BakeSettings::default() }
 }
 
 pub fn bake(scene: &Scene, settings: &BakeSettings) -> Lightmap {

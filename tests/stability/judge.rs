@@ -3,7 +3,7 @@
 use crate::case::Verdict;
 use crate::common::meter::mean;
 use crate::worlds::{level_room, room};
-use bevy_kiln::bake::{BakeReport, BakeSettings, BakeWarning, CancelToken, Lightmap};
+use bevy_kiln::bake::{BakeReport, BakeSettings, BakeWarning, CancelToken, Goal, Lightmap};
 use bevy_kiln::bake::{MeterPoint, MeterReading, MeterSettings};
 use bevy_kiln::bake::{bake_lightmap, measure_irradiance};
 use bevy_kiln::math::luminance;
@@ -150,7 +150,7 @@ impl SameRoom<'_> {
     /// random numbers but where points have no error off their walls.
     pub fn holds(&self) -> Verdict {
         let bake = |scene: &Scene, density: f32| {
-            baked(scene, &BakeSettings { samples_per_texel: 64, density, ..BakeSettings::default() })
+            baked(scene, &BakeSettings { goal: Goal::Samples(64), density, ..BakeSettings::default() })
                 .map(|lightmap| texels(&lightmap))
         };
         let (_, level) = bake(&level_room(), self.density)?;

@@ -3,7 +3,7 @@
 use crate::check::judge;
 use crate::shapes::*;
 use crate::{alone, instance, layout, settings};
-use bevy_kiln::bake::{BakeSettings, CancelToken, TexelLayout, bake_lightmap};
+use bevy_kiln::bake::{BakeSettings, CancelToken, Goal, TexelLayout, bake_lightmap};
 use bevy_kiln::scene::Scene;
 use glam::{Affine3A, Quat, Vec3};
 use std::num::NonZeroUsize;
@@ -99,7 +99,7 @@ fn a_shipped_mesh_is_rebuilt_from_its_source() {
 fn a_bake_of_what_was_unwrapped() {
     let mut scene = alone(sphere(32, 16));
     scene.materials[0].base_colour = Vec3::ZERO.extend(1.0);
-    let settings = BakeSettings { samples_per_texel: 16, ..settings(4.0) };
+    let settings = BakeSettings { goal: Goal::Samples(16), ..settings(4.0) };
     let lightmap = bake_lightmap(&scene, &settings, &(), &CancelToken::default()).unwrap();
     let layout: TexelLayout = layout(&scene, &settings);
     assert_eq!(lightmap.placements, layout.placements);

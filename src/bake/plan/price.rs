@@ -1,8 +1,6 @@
-//! The pilot: a few texels, traced to tell what all of them will cost.
+//! Pilots: a few texels, traced with and without each effect to tell what it costs.
 
 use crate::bake::endless::refuse_endless_texels;
-use crate::bake::gather::{Estimate, relative_error};
-use crate::bake::plan::Prediction;
 use crate::bake::sites::Site;
 use crate::bake::workers::Workers;
 use crate::bake::{BakeError, BakeSettings};
@@ -10,19 +8,10 @@ use crate::scene::Scene;
 use crate::trace::{Compiled, Effect, Tracer};
 use std::time::Instant;
 
-/// Texels that the pilot traces.
-const TEXELS: usize = 256;
-
-/// Paths from each of them.
-const PATHS: u32 = 64;
-
-/// Texels and paths of the pilots that price a single effect, and how often each is run.
+/// Texels and paths of a pilot, and how often each is run.
 const SHARE_TEXELS: usize = 64;
 const SHARE_PATHS: u32 = 64;
 const SHARE_RUNS: usize = 3;
-
-/// Errors that a price is given for: half-widths of the 95 % interval over the value.
-const PRICED_ERRORS: [f64; 5] = [0.10, 0.05, 0.02, 0.01, 0.005];
 
 /// A few texels that stand for all.
 pub(super) struct Pilot<'a> {
@@ -34,15 +23,6 @@ pub(super) struct Pilot<'a> {
 impl<'a> Pilot<'a> {
     pub(super) fn new(sites: &'a [Site], settings: &'a BakeSettings, workers: &'a Workers<'a>) -> Self {
         Self { sites, settings, workers }
-    }
-
-    /// Times for a few errors.
-    pub(super) fn predict(&self, tracer: &Tracer) -> Result<Vec<Prediction>, BakeError> {
-        let (estimates, seconds) = self.trace(tracer, [TEXELS, PATHS as usize])?;
-        let seconds = seconds * self.sites.len() as f64 / estimates.len().max(1) as f64;
-        let half_width = 1.96 * relative_error(&estimates).mean;
-        let price = |error: f64| Prediction { error, seconds: seconds * (half_width / error).powi(2) };
-        Ok(PRICED_ERRORS.into_iter().map(price).collect())
     }
 
     /// Share of the time that each effect which is on costs: what is saved where it is forced off.
@@ -71,20 +51,14 @@ impl<'a> Pilot<'a> {
         Compiled::sharing_tree(scene, &transport, tracer).tracer
     }
 
+    /// The time that texels take which are spread evenly over all [s].
     fn time(&self, tracer: &Tracer) -> Result<f64, BakeError> {
-        Ok(self.trace(tracer, [SHARE_TEXELS, SHARE_PATHS as usize])?.1)
-    }
-
-    /// Traces texels spread evenly over all, and tells the time it took [s].
-    fn trace(&self, tracer: &Tracer, [texels, paths]: [usize; 2]) -> Result<(Vec<Estimate>, f64), BakeError> {
-        let step = (self.sites.len() / texels).max(1);
+        let step = (self.sites.len() / SHARE_TEXELS).max(1);
         let pilot: Vec<&Site> = self.sites.iter().step_by(step).collect();
         let transport = &self.settings.transport;
         let clock = Instant::now();
-        let estimates = self
-            .workers
-            .gather_quietly(&pilot, |site, cancel| site.estimate(tracer, paths as u32, transport, cancel))?;
-        Ok((estimates, clock.elapsed().as_secs_f64()))
+        self.workers.gather_quietly(&pilot, |site, cancel| site.estimate(tracer, SHARE_PATHS, transport, cancel))?;
+        Ok(clock.elapsed().as_secs_f64())
     }
 }
 

@@ -10,7 +10,7 @@ use crate::guards::crossings::{
 use crate::judge::{agree, all_read, baked, ensure, light_at, light_by, mean_reads};
 use crate::worlds::under;
 use bevy_kiln::artefact::StableId;
-use bevy_kiln::bake::BakeSettings;
+use bevy_kiln::bake::{BakeSettings, Goal};
 use bevy_kiln::math::{combine, corner_parallel_rectangle};
 use bevy_kiln::scene::{Light, PointLight};
 use bevy_kiln::trace::{Estimator, Tracer};
@@ -174,7 +174,7 @@ fn level_floor() -> Verdict {
     let edges = [Vec3::Z * 10.0, Vec3::X * 10.0];
     let floor = SceneBuilder::default().quad("floor", Vec3::new(-5.3, 0.0, -4.1), edges, grey(0.5));
     let scene = floor.sky(Vec3::ONE).build();
-    let settings = BakeSettings { samples_per_texel: 64, density: 3.0, ..BakeSettings::default() };
+    let settings = BakeSettings { goal: Goal::Samples(64), density: 3.0, ..BakeSettings::default() };
     let page = baked(&scene, &settings)?.pages.swap_remove(0);
     let texels = page.raw.iter().zip(&page.coverage).filter(|(_, coverage)| **coverage > 0.0);
     let darkest = texels.map(|(value, _)| value.x).fold(f32::INFINITY, f32::min);

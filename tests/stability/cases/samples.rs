@@ -9,7 +9,7 @@ use crate::guards::sampler::{
 };
 use crate::judge::{baked, ensure, light_at, light_by, mean_reads, reads};
 use bevy_kiln::bake::{
-    BakeError, BakeSettings, CancelToken, MeterSettings, PictureSettings, measure_irradiance, render_picture,
+    BakeError, BakeSettings, CancelToken, Goal, MeterSettings, PictureSettings, measure_irradiance, render_picture,
 };
 use bevy_kiln::math::{corner_parallel_rectangle, parallel_rectangles};
 use bevy_kiln::scene::{Camera, Scene};
@@ -200,7 +200,7 @@ fn floor_errors(seed: u64, floor: &str) -> Result<Vec<f64>, String> {
     let mut scene = furnace(0.5);
     scene.instances.iter_mut().filter(|side| side.name != floor).for_each(|side| side.lightmap = None);
     let transport = Transport { seed, ..Transport::default() };
-    let settings = BakeSettings { transport, samples_per_texel: 16, density: 12.0, ..BakeSettings::default() };
+    let settings = BakeSettings { transport, goal: Goal::Samples(16), density: 12.0, ..BakeSettings::default() };
     let page = baked(&scene, &settings)?.pages.swap_remove(0);
     let covered = page.raw.iter().zip(&page.coverage).filter(|(_, coverage)| **coverage > 0.0);
     let errors: Vec<f64> = covered.map(|(value, _)| f64::from(value.x) - 2.0).collect();
@@ -282,7 +282,7 @@ fn one_large_texel() -> Verdict {
     let mut scene = scene;
     scene.instances[1].lightmap = None;
     let transport = by(Estimator::Bsdf);
-    let settings = BakeSettings { transport, samples_per_texel: 1 << 15, density: 1.0, ..BakeSettings::default() };
+    let settings = BakeSettings { transport, goal: Goal::Samples(1 << 15), density: 1.0, ..BakeSettings::default() };
     let page = baked(&scene, &settings)?.pages.swap_remove(0);
     let texel = page.raw.iter().zip(&page.coverage).find(|(_, coverage)| **coverage > 0.99);
     let value = f64::from(texel.ok_or("no texel")?.0.x);

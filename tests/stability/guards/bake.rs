@@ -17,9 +17,9 @@ pub static LIGHT_ONLY: Guard = Guard {
     name: "light only",
     does: "a path's value that is negative or not finite is not added to a mean; it is counted and reported",
     edits: &[Edit {
-        file: "src/bake/gather.rs",
+        file: "src/bake/gather/runs.rs",
         text: "if !is_light(value) {",
-        instead: "if !is_light(value) && tally.rays == 0 {",
+        instead: "if !is_light(value) && self.tally.rays == 0 {",
     }],
 };
 
@@ -28,9 +28,9 @@ pub static SUM_IN_F64: Guard = Guard {
     does: "paths are added up in f64 in 16 runs: n additions are off by at most n · 2⁻⁵³ of the sum, 1.1e-7 for 1e9 \
            paths (Higham 2002, § 4.2)",
     edits: &[Edit {
-        file: "src/bake/gather.rs",
-        text: "sum += kept.as_dvec3();",
-        instead: "sum = (sum.as_vec3() + kept).as_dvec3();",
+        file: "src/bake/gather/runs.rs",
+        text: "run.sum += kept.as_dvec3();",
+        instead: "run.sum = (run.sum.as_vec3() + kept).as_dvec3();",
     }],
 };
 

@@ -6,9 +6,9 @@ pub static FULL_SUMS: Guard = Guard {
     name: "samples summed in f64",
     does: "the light of samples is summed in f64, whatever its size; no half-float lies between",
     edits: &[Edit {
-        file: "src/bake/gather.rs",
-        text: "sum += kept.as_dvec3();",
-        instead: "sum += Vec3::from_array(kept.to_array().map(|c| half::f16::from_f32(c).to_f32())).as_dvec3();",
+        file: "src/bake/gather/runs.rs",
+        text: "run.sum += kept.as_dvec3();",
+        instead: "run.sum += Vec3::from_array(kept.to_array().map(|c| half::f16::from_f32(c).to_f32())).as_dvec3();",
     }],
 };
 

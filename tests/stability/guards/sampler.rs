@@ -88,9 +88,9 @@ pub static KEY_OF_REPLICATE: Guard = Guard {
     does: "an estimate is the mean of 16 runs with scrambles of their own; only their spread is an honest error (Owen \
            1997)",
     edits: &[Edit {
-        file: "src/bake/gather.rs",
-        text: "let key = combine(paths.key, replicate as u64);",
-        instead: "let key = combine(paths.key, (replicate / 8) as u64);",
+        file: "src/bake/gather/runs.rs",
+        text: "let key = combine(self.key, number as u64);",
+        instead: "let key = combine(self.key, (number / 8) as u64);",
     }],
 };
 
@@ -98,9 +98,9 @@ pub static WHOLE_REPLICATES: Guard = Guard {
     name: "samples rounded up to whole replicates",
     does: "every replicate has a sample: its mean is never 0/0",
     edits: &[Edit {
-        file: "src/bake/gather.rs",
-        text: "u64::from(paths.count.div_ceil(REPLICATES))",
-        instead: "u64::from(paths.count / REPLICATES)",
+        file: "src/bake/gather/runs.rs",
+        text: "u64::from(count.div_ceil(REPLICATES))",
+        instead: "u64::from(count / REPLICATES)",
     }],
 };
 
@@ -108,8 +108,8 @@ pub static CANCEL: Guard = Guard {
     name: "a look at the cancel switch every 64 paths",
     does: "an estimate that would take hours ends when it is asked to",
     edits: &[Edit {
-        file: "src/bake/gather.rs",
-        text: "if index % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {",
-        instead: "if index == u64::MAX.wrapping_add(CANCEL_INTERVAL) && cancel.is_cancelled() {",
+        file: "src/bake/gather/runs.rs",
+        text: "if run.index % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {",
+        instead: "if run.index == u64::MAX.wrapping_add(CANCEL_INTERVAL) && cancel.is_cancelled() {",
     }],
 };

@@ -8,7 +8,7 @@ use crate::guards::path::{SURVIVAL_AT_MOST_ONE, SURVIVORS_STAND_IN};
 use crate::judge::{baked, ensure};
 use crate::things::sphere;
 use crate::worlds::joined;
-use bevy_kiln::bake::BakeSettings;
+use bevy_kiln::bake::{BakeSettings, Goal};
 use bevy_kiln::scene::Scene;
 use glam::Vec3;
 
@@ -43,7 +43,7 @@ pub const CASES: &[Case] = &[
 ];
 
 fn balances(scene: &Scene, density: f32, tolerance: f64) -> Verdict {
-    let settings = BakeSettings { samples_per_texel: 256, density, ..BakeSettings::default() };
+    let settings = BakeSettings { goal: Goal::Samples(256), density, ..BakeSettings::default() };
     let balance = baked(scene, &settings)?.report.energy_balance;
     ensure(balance.is_some_and(|balance| (balance - 1.0).abs() <= tolerance), || {
         format!("absorbed over emitted flux: {balance:?}")

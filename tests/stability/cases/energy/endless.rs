@@ -9,7 +9,7 @@ use crate::guards::path::{LENGTH_BOUND, NO_BEST_CHANCE};
 use crate::judge::{all_read, ensure, light_at};
 use crate::things::of;
 use bevy_kiln::bake::{
-    BakeSettings, BakeWarning, CancelToken, MeterPoint, MeterSettings, PictureSettings, bake_lightmap,
+    BakeSettings, BakeWarning, CancelToken, Goal, MeterPoint, MeterSettings, PictureSettings, bake_lightmap,
     measure_irradiance, render_picture,
 };
 use bevy_kiln::scene::{Camera, Scattering, Scene};
@@ -41,7 +41,7 @@ pub const CASES: &[Case] = &[
         guard: &ENDLESS_REFUSED,
         without: NOT_REFUSED,
         check: || {
-            let settings = BakeSettings { samples_per_texel: 16, density: 0.5, ..BakeSettings::default() };
+            let settings = BakeSettings { goal: Goal::Samples(16), density: 0.5, ..BakeSettings::default() };
             let baked = bake_lightmap(&furnace(1.0), &settings, &(), &CancelToken::default());
             refused(baked.map(|_| ()).map_err(|error| error.to_string()))
         },

@@ -4,7 +4,7 @@ use crate::case::{Case, Verdict};
 use crate::common::scenes::{SceneBuilder, glowing, grey};
 use crate::guards::output::{HELD_TO_FORMAT, ROUNDED_AS_SPECIFIED};
 use crate::judge::{baked, ensure};
-use bevy_kiln::bake::{BakeSettings, BakeWarning, Page};
+use bevy_kiln::bake::{BakeSettings, BakeWarning, Goal, Page};
 use bevy_kiln::output::{OutputFormat, TexelFormat, texel_bytes, write_lightmap};
 use glam::Vec3;
 
@@ -186,7 +186,7 @@ fn bright_bake() -> Verdict {
         .quad("ground", Vec3::ZERO, [Vec3::Z, Vec3::X], grey(0.5))
         .quad("lamp", Vec3::new(0.0, 0.001, 0.0), [Vec3::X, Vec3::Z], glowing(0.0, 1e7))
         .build();
-    let lightmap = baked(&scene, &BakeSettings { samples_per_texel: 16, density: 4.0, ..BakeSettings::default() })?;
+    let lightmap = baked(&scene, &BakeSettings { goal: Goal::Samples(16), density: 4.0, ..BakeSettings::default() })?;
     let folder = temp_dir::TempDir::new().map_err(|error| error.to_string())?;
     let written = write_lightmap(&lightmap, "bright", folder.path(), OutputFormat::Rgba16f);
     let written = written.map_err(|error| error.to_string())?;

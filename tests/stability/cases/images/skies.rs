@@ -6,7 +6,7 @@ use crate::common::meter::at;
 use crate::guards::bake::NO_LIGHT_REFUSED;
 use crate::guards::texture::{EMISSION_IN_BOUNDS, SINE_INTEGRATED, SKY_BY_ITS_LIGHT};
 use crate::judge::{baked, is_refused, light_at, reads};
-use bevy_kiln::bake::BakeSettings;
+use bevy_kiln::bake::{BakeSettings, Goal};
 use bevy_kiln::scene::EnvironmentMap;
 use glam::{Vec2, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -79,7 +79,7 @@ pub const CASES: &[Case] = &[
         check: || {
             let mut scene = under_map(sky([4, 2], |_, _| 0.0));
             scene.meshes[0].uv1 = Some(vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y]);
-            match baked(&scene, &BakeSettings { samples_per_texel: 16, ..BakeSettings::default() }) {
+            match baked(&scene, &BakeSettings { goal: Goal::Samples(16), ..BakeSettings::default() }) {
                 Err(error) if error.starts_with("the scene has no light") => Ok(()),
                 other => Err(format!("{:?}", other.map(|lightmap| lightmap.report))),
             }

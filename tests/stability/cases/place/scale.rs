@@ -9,7 +9,7 @@ use crate::guards::scene::TEXELS_IN_WORLD;
 use crate::judge::{SameRoom, baked, ensure, texels};
 use crate::look::{FURNACE_HOLDS, furnace_of_0_8};
 use crate::worlds::{askew, points_under, room, under};
-use bevy_kiln::bake::BakeSettings;
+use bevy_kiln::bake::{BakeSettings, Goal};
 use glam::{Affine3A, Vec3};
 use std::f64::consts::PI;
 
@@ -146,7 +146,7 @@ fn nested() -> Affine3A {
 /// Whether a square of 1 m has this many texels under this root, 9 per metre, and no other light for that.
 fn texels_of(root: Affine3A, expected: usize) -> Verdict {
     let quad = SceneBuilder::default().quad("quad", Vec3::ZERO, [Vec3::Z, Vec3::X], grey(0.5)).sky(Vec3::ONE).build();
-    let settings = BakeSettings { samples_per_texel: 64, density: 9.0, ..BakeSettings::default() };
+    let settings = BakeSettings { goal: Goal::Samples(64), density: 9.0, ..BakeSettings::default() };
     let (count, mean) = texels(&baked(&under(quad, root), &settings)?);
     ensure(count == expected, || format!("{count} texels, not {expected}"))?;
     ensure((mean - 1.0).abs() < 1e-3, || format!("the mean texel is {mean}, not 1"))

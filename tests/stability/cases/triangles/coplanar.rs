@@ -9,7 +9,7 @@ use crate::judge::{baked, ensure, light_at};
 use crate::things::{bulb, sun};
 use crate::worlds::{askew_aside, in_the_room, room, under};
 use bevy_kiln::artefact::StableId;
-use bevy_kiln::bake::BakeSettings;
+use bevy_kiln::bake::{BakeSettings, Goal};
 use bevy_kiln::scene::{Instance, Light, Material, PointLight, Scene};
 use glam::{Vec2, Vec3};
 use std::f64::consts::PI;
@@ -114,7 +114,7 @@ fn back_to_back(gap: f32) -> Verdict {
         .build();
     scene.lights.push(Light::Directional(sun(Vec3::new(0.6, 0.8, 0.0), 0.0)));
     let scene = under(scene, askew_aside());
-    let lightmap = baked(&scene, &BakeSettings { samples_per_texel: 16, density: 4.0, ..BakeSettings::default() })?;
+    let lightmap = baked(&scene, &BakeSettings { goal: Goal::Samples(16), density: 4.0, ..BakeSettings::default() })?;
     for placement in &lightmap.placements {
         let page = &lightmap.pages[placement.page as usize];
         let size = Vec2::new(page.width as f32, page.height as f32);

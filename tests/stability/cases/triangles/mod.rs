@@ -12,7 +12,7 @@ mod small;
 use crate::case::{Case, Verdict};
 use crate::judge::{SameRoom, baked};
 use crate::worlds::room;
-use bevy_kiln::bake::BakeSettings;
+use bevy_kiln::bake::{BakeSettings, Goal};
 use bevy_kiln::scene::Scene;
 use glam::Vec3;
 
@@ -29,7 +29,7 @@ pub const CASES: &[&[Case]] = &[
 
 /// Every texel of a bake, covered or not.
 fn raw_texels(scene: &Scene) -> Result<Vec<Vec3>, String> {
-    let settings = BakeSettings { samples_per_texel: 64, density: 3.3, ..BakeSettings::default() };
+    let settings = BakeSettings { goal: Goal::Samples(64), density: 3.3, ..BakeSettings::default() };
     let pages = baked(scene, &settings)?.pages;
     Ok(pages.iter().flat_map(|page| page.raw.clone()).collect())
 }

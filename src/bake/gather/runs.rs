@@ -1,0 +1,150 @@
+//! The independently scrambled runs of one estimate, which may be carried on: what was traced is never traced again.
+
+use super::{Estimate, REPLICATES, Start};
+use crate::bake::CancelToken;
+use crate::math::{combine, luminance, student_t_two_sided_95};
+use crate::trace::{Sobol, Tally};
+use glam::{DVec3, Vec3};
+use std::sync::LazyLock;
+
+/// How many starts may be refused for each one that is wanted, before a path starts wherever it can.
+const PATIENCE: u64 = 8;
+
+/// Paths between two looks at the cancel switch.
+const CANCEL_INTERVAL: u64 = 64;
+
+/// By how many of its standard errors an estimate may miss the truth in 95 of 100 cases.
+static QUANTILE: LazyLock<f64> = LazyLock::new(|| student_t_two_sided_95(f64::from(REPLICATES - 1)));
+
+/// Sums over the paths so far.
+#[derive(Clone, Debug)]
+pub(in crate::bake) struct Runs {
+    key: u64,
+    clamp: Option<f32>,
+    runs: [Run; REPLICATES as usize],
+    /// Paths of each run that were not refused.
+    accepted: u64,
+    tally: Tally,
+    /// What the clamp took, as luminance.
+    taken: f64,
+    not_light: u64,
+}
+
+/// One scramble of the sequence.
+#[derive(Clone, Copy, Debug, Default)]
+struct Run {
+    sum: DVec3,
+    /// Place in the sequence.
+    index: u64,
+}
+
+impl Runs {
+    /// None yet. A path may bring at most `clamp` in its strongest channel.
+    pub(in crate::bake) fn new(key: u64, clamp: Option<f32>) -> Self {
+        let runs = [Run::default(); REPLICATES as usize];
+        Self { key, clamp, runs, accepted: 0, tally: Tally::default(), taken: 0.0, not_light: 0 }
+    }
+
+    /// Carries on until there are at least `count` paths in all. `path` gives one path's value for its numbers and
+    /// counts what it did, or refuses it; once too many have been refused it is asked for what cannot be
+    /// ([`Start::Anywhere`]). `None` if cancelled.
+    pub(in crate::bake) fn extend(
+        &mut self,
+        count: u32,
+        cancel: &CancelToken,
+        mut path: impl FnMut(&Sobol, Start, &mut Tally) -> Option<Vec3>,
+    ) -> Option<()> {
+        let per_run = u64::from(count.div_ceil(REPLICATES));
+        for (number, run) in self.runs.iter_mut().enumerate() {
+            let key = combine(self.key, number as u64);
+            let mut accepted = self.accepted;
+            while accepted < per_run {
+                if run.index % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {
+                    return None;
+                }
+                let start = if run.index < PATIENCE * per_run { Start::Drawn } else { Start::Anywhere };
+                let value = path(&Sobol::new(key, run.index), start, &mut self.tally);
+                run.index += 1;
+                let Some(value) = value else { continue };
+                accepted += 1;
+                if !is_light(value) {
+                    self.not_light += 1;
+                    continue;
+                }
+                let kept = clamped(value, self.clamp);
+                self.taken += luminance(value - kept);
+                run.sum += kept.as_dvec3();
+            }
+        }
+        self.accepted = self.accepted.max(per_run);
+        Some(())
+    }
+
+    /// What they say.
+    pub(in crate::bake) fn estimate(&self) -> Estimate {
+        let count = f64::from(REPLICATES);
+        let means = self.runs.map(|run| run.sum / self.accepted.max(1) as f64);
+        let mean = means.iter().sum::<DVec3>() / count;
+        let squares: DVec3 = means.iter().map(|&value| (value - mean) * (value - mean)).sum();
+        let variance_of_mean = squares / (count * (count - 1.0));
+        let stderr = DVec3::from(variance_of_mean.to_array().map(f64::sqrt));
+        let off = |&value: &DVec3| luminance(value - mean);
+        let luminance_error =
+            (means.iter().map(|value| off(value).powi(2)).sum::<f64>() / (count * (count - 1.0))).sqrt();
+        let half = means.iter().step_by(2).sum::<DVec3>() / (0.5 * count);
+        let samples = self.accepted * u64::from(REPLICATES);
+        let tries: u64 = self.runs.iter().map(|run| run.index).sum();
+        Estimate {
+            mean,
+            stderr,
+            luminance_error,
+            half,
+            samples,
+            rays: self.tally.rays,
+            accepted: samples as f64 / tries.max(1) as f64,
+            clamped: self.taken / samples.max(1) as f64,
+            not_light: self.not_light,
+            endless: self.tally.endless,
+            half_width: *QUANTILE * luminance_error,
+        }
+    }
+}
+
+/// Whether a path's value can be light: one that is not would spoil the mean of all.
+fn is_light(value: Vec3) -> bool {
+    value.is_finite() && value.min_element() >= 0.0
+}
+
+/// A value with its hue and, in its strongest channel, at most `limit`.
+fn clamped(value: Vec3, limit: Option<f32>) -> Vec3 {
+    match limit {
+        Some(limit) if value.max_element() > limit => value * (limit / value.max_element()),
+        _ => value,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::{Dimensions, Sampler};
+
+    /// Carried on in rounds, with some refused, it is what it would be in one go.
+    #[test]
+    fn rounds_make_what_one_go_makes() {
+        let cancel = CancelToken::default();
+        let path = |sobol: &Sobol, _: Start, tally: &mut Tally| {
+            tally.rays += 1;
+            let [u, v, ..] = sobol.draw(Dimensions::Start);
+            (v > 0.3).then(|| Vec3::new(u, u * u, 1.0))
+        };
+        let mut at_once = Runs::new(7, Some(0.8));
+        at_once.extend(512, &cancel, path).unwrap();
+        let mut carried_on = Runs::new(7, Some(0.8));
+        for count in [64, 64, 100, 512] {
+            carried_on.extend(count, &cancel, path).unwrap();
+        }
+        let [a, b] = [&at_once, &carried_on].map(Runs::estimate);
+        assert_eq!(format!("{a:?}"), format!("{b:?}"));
+        assert!(a.samples == 512 && a.rays > 600 && a.accepted < 0.8, "{a:?}");
+    }
+}

@@ -1,0 +1,182 @@
+//! Texels sampled tile by tile, each until it is known well enough.
+//!
+//! A tile is a square of texels of one object. Its texels are sampled in rounds, each of which doubles their paths; a
+//! texel whose interval is narrow enough takes no part in the next. Nothing but a tile's own texels has a say in that,
+//! so threads and the order of tiles cannot matter, and no more runs are held than those of the tiles in work.
+//!
+//! The interval of a texel is Student's, by the spread of its runs. By chance a spread comes out too small, and who
+//! looks after each round and stops at the first small one picks just these (Wald 1945 on tests that look again and
+//! again). So the variance of a texel counts as no smaller than the mean over it and those around it in its tile and
+//! chart, each scaled to the texel's number of paths: nine texels together have 135 degrees of freedom, which are not
+//! small by chance. Where a texel is noisier than those around it its own variance stands. `tests/calibration` holds
+//! what comes of it against long references.
+
+use super::gather::{Estimate, Runs};
+use super::sites::Site;
+use super::{CancelToken, REPLICATES};
+use crate::math::{luminance, student_t_two_sided_95};
+use crate::trace::{Tracer, Transport};
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+/// Side of a tile [texels].
+const SIDE: u32 = 8;
+
+/// Paths of the first round: four in each run, or their spread is no variance to speak of.
+pub(super) const LEAST_PATHS: u32 = 64;
+
+/// The most paths that a texel gets.
+pub(super) const MOST_PATHS: u32 = 1 << 20;
+
+/// Texels whose variances are pooled, at most.
+const MOST_POOLED: usize = 9;
+
+/// By how many standard errors an estimate may miss the truth in 95 of 100 cases, by how many texels were pooled.
+static QUANTILES: LazyLock<[f64; MOST_POOLED + 1]> = LazyLock::new(|| {
+    std::array::from_fn(|pooled| student_t_two_sided_95(f64::from(REPLICATES - 1) * pooled.max(1) as f64))
+});
+
+/// How well texels are to be known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Until {
+    /// By so many paths.
+    Samples(u32),
+    /// To this error.
+    Error(ErrorTarget),
+}
+
+/// How far off a texel may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ErrorTarget {
+    /// Half-width of the 95 % interval over the value.
+    pub(super) relative: f64,
+    /// What the value counts as at least [cd/m²].
+    pub(super) floor: f64,
+}
+
+impl ErrorTarget {
+    /// Whether a texel is known well enough.
+    pub(super) fn is_met(self, estimate: &Estimate) -> bool {
+        estimate.half_width <= self.relative * self.value(estimate)
+    }
+
+    /// What the error of a texel is relative to [cd/m²].
+    pub(super) fn value(self, estimate: &Estimate) -> f64 {
+        luminance(estimate.mean).max(self.floor)
+    }
+}
+
+/// Texels near each other.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tile {
+    /// By number in the list of sites.
+    pub(super) sites: Vec<u32>,
+    /// Of each, the places in the tile of those around it in its chart.
+    around: Vec<Vec<u8>>,
+}
+
+/// All tiles, in an order of chance: of any first part of it the rest can be told.
+pub(super) fn tiles(sites: &[Site]) -> Vec<Tile> {
+    let mut by_place: BTreeMap<[u32; 4], Vec<u32>> = BTreeMap::new();
+    for (number, Site { covered, .. }) in sites.iter().enumerate() {
+        let [x, y] = covered.place.map(|along| along / SIDE);
+        by_place.entry([covered.page, covered.receiver, y, x]).or_default().push(number as u32);
+    }
+    let mut tiles: Vec<Tile> = by_place.into_values().map(|of_tile| Tile::new(of_tile, sites)).collect();
+    // Keys of texels are hashes.
+    tiles.sort_by_key(|tile| sites[tile.sites[0] as usize].covered.key);
+    tiles
+}
+
+impl Tile {
+    fn new(of_tile: Vec<u32>, sites: &[Site]) -> Self {
+        let covered = |number: u32| &sites[number as usize].covered;
+        let is_beside = |a: u32, b: u32| {
+            let [a, b] = [a, b].map(covered);
+            a.chart == b.chart && (0..2).all(|axis| a.place[axis].abs_diff(b.place[axis]) <= 1)
+        };
+        let of_one = |&one: &u32| {
+            let others = of_tile.iter().enumerate().filter(|&(_, &other)| other != one && is_beside(one, other));
+            others.map(|(place, _)| place as u8).collect()
+        };
+        Self { around: of_tile.iter().map(of_one).collect(), sites: of_tile }
+    }
+
+    /// Measures its texels, in their order; `None` if cancelled.
+    pub(super) fn measure(
+        &self,
+        sites: &[Site],
+        tracer: &Tracer,
+        until: Until,
+        transport: &Transport,
+        cancel: &CancelToken,
+    ) -> Option<Vec<Estimate>> {
+        let mut rounds = Rounds::new(self, sites, tracer, transport);
+        match until {
+            Until::Samples(count) => rounds.sample(count, |_| true, cancel)?,
+            Until::Error(target) => {
+                let mut paths = LEAST_PATHS;
+                while paths <= MOST_PATHS {
+                    let is_open: Vec<bool> = rounds
+                        .estimates
+                        .iter()
+                        .map(|estimate| paths == LEAST_PATHS || !target.is_met(estimate))
+                        .collect();
+                    if !is_open.contains(&true) {
+                        break;
+                    }
+                    rounds.sample(paths, |place| is_open[place], cancel)?;
+                    paths *= 2;
+                }
+            }
+        }
+        Some(rounds.estimates)
+    }
+}
+
+/// A tile in work.
+pub(super) struct Rounds<'a> {
+    tile: &'a Tile,
+    sites: &'a [Site],
+    tracer: &'a Tracer,
+    transport: &'a Transport,
+    runs: Vec<Runs>,
+    pub(super) estimates: Vec<Estimate>,
+}
+
+impl<'a> Rounds<'a> {
+    pub(super) fn new(tile: &'a Tile, sites: &'a [Site], tracer: &'a Tracer, transport: &'a Transport) -> Self {
+        let runs = tile.sites.iter().map(|&site| sites[site as usize].runs(transport)).collect();
+        Self { tile, sites, tracer, transport, runs, estimates: vec![Estimate::default(); tile.sites.len()] }
+    }
+
+    /// Carries on those that take part until they have so many paths; `None` if cancelled.
+    pub(super) fn sample(
+        &mut self,
+        paths: u32,
+        takes_part: impl Fn(usize) -> bool,
+        cancel: &CancelToken,
+    ) -> Option<()> {
+        for (place, (runs, &site)) in self.runs.iter_mut().zip(&self.tile.sites).enumerate() {
+            if takes_part(place) {
+                self.sites[site as usize].carry_on(runs, self.tracer, paths, self.transport, cancel)?;
+                self.estimates[place] = runs.estimate();
+            }
+        }
+        let widths: Vec<f64> = (0..self.estimates.len()).map(|place| self.half_width(place)).collect();
+        self.estimates.iter_mut().zip(widths).for_each(|(estimate, width)| estimate.half_width = width);
+        Some(())
+    }
+
+    /// Half the width of the 95 % interval of a texel's luminance [cd/m²].
+    fn half_width(&self, place: usize) -> f64 {
+        let of_one_path =
+            |place: usize| self.estimates[place].luminance_error.powi(2) * self.estimates[place].samples as f64;
+        let around = &self.tile.around[place];
+        let own = of_one_path(place);
+        let pooled = own + around.iter().map(|&other| of_one_path(other.into())).sum::<f64>();
+        let count = around.len() + 1;
+        let variance = own.max(pooled / count as f64) / self.estimates[place].samples.max(1) as f64;
+        QUANTILES[count.min(MOST_POOLED)] * variance.sqrt()
+    }
+}
