@@ -263,8 +263,6 @@ fn wrong_arguments_and_what_is_not_there_yet() {
         (&["bake", scene, "-o", "x", "--size", "64"], "--layout shared"),
         (&["bake", scene, "-o", "x", "--format", "jpg"], "use rgb9e5, rgba16f, bc6h or exr"),
         (&["bake", scene, "-o", "x", "--emissive", "lumens"], "use nits"),
-        (&["bake", scene, "-o", "x", "--error", "2%"], "`--error` is not there yet"),
-        (&["bake", scene, "-o", "x", "--time", "5m"], "`--time` is not there yet"),
         (&["bake", scene, "-o", "x", "--resume"], "`--resume` is not there yet"),
         (&["bake", scene, "-o", "x", "--shard", "1/2"], "`--shard` is not there yet"),
         (&["render", scene, "-o", "a.png", "--error", "1%"], "`--error` is not there yet"),

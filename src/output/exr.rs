@@ -13,7 +13,8 @@ use glam::Vec3;
 use std::io::{self, Seek, Write};
 
 /// Every layer of a page, which must be as long as the page has texels: `R,G,B` after repair, `A` coverage, `raw` and
-/// `stderr`; row 0 at v = 0 [cd/m²].
+/// `stderr` [cd/m²], and of what was measured the half-width `interval.Y` of the 95 % interval of luminance [cd/m²],
+/// `cost.samples` (paths) and `cost.rays`; row 0 at v = 0.
 pub(super) fn write_page(page: &Page, to: impl Write + Seek) -> io::Result<()> {
     let width = page.width as usize;
     let channels = SpecificChannels::build()
@@ -27,13 +28,33 @@ pub(super) fn write_page(page: &Page, to: impl Write + Seek) -> io::Result<()> {
         .with_channel::<f32>("stderr.R")
         .with_channel::<f32>("stderr.G")
         .with_channel::<f32>("stderr.B")
+        .with_channel::<f32>("interval.Y")
+        .with_channel::<f32>("cost.samples")
+        .with_channel::<f32>("cost.rays")
         .with_pixel_fn(|Vec2(x, y)| {
             let index = y * width + x;
+            let half_width = page.half_width.get(index).map_or(0.0, |&width| clamp(width, f32::MAX));
+            let samples = page.samples.get(index).map_or(0.0, |&samples| samples as f32);
+            let rays = page.rays.get(index).map_or(0.0, |&rays| rays as f32);
             let [red, green, blue] = finite_radiance(page.radiance[index]).to_array();
             let [raw_red, raw_green, raw_blue] = finite_radiance(page.raw[index]).to_array();
             let [stderr_red, stderr_green, stderr_blue] = finite_stderr(page.stderr[index]).to_array();
             let alpha = clamp(page.coverage[index], 1.0);
-            (red, green, blue, alpha, raw_red, raw_green, raw_blue, stderr_red, stderr_green, stderr_blue)
+            (
+                red,
+                green,
+                blue,
+                alpha,
+                raw_red,
+                raw_green,
+                raw_blue,
+                stderr_red,
+                stderr_green,
+                stderr_blue,
+                half_width,
+                samples,
+                rays,
+            )
         });
     let layer = Layer::new((width, page.height as usize), attributes("E/pi [cd/m^2]"), encoding(), channels);
     Image::from_layer(layer).write().to_buffered(to).map_err(io_error)

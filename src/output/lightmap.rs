@@ -3,7 +3,7 @@
 
 use super::compression::{CompressionError, Losses};
 use super::safe_write::{Staged, make_folder};
-use super::{OutputError, OutputFormat, TexelFormat, exr, ktx2, overview, png, texel_bytes};
+use super::{OutputError, OutputFormat, TexelFormat, cost, exr, ktx2, overview, png, texel_bytes};
 use crate::artefact::{
     self, BakedLight, MANIFEST_FILE, MANIFEST_VERSION, MESHES_FILE, Manifest, MeshLayout, MeshLayoutError,
 };
@@ -28,7 +28,7 @@ pub struct WrittenLightmap {
 }
 
 /// Writes a lightmap into the folder `dir`, which is made if it is missing: `lightmap_<page>.ktx2` to display,
-/// `lightmap_<page>.png` to look at, `overview_<page>.png` to see how the page is used, with [`OutputFormat::Exr`] `lightmap_<page>.exr` to measure with,
+/// `lightmap_<page>.png` to look at, `overview_<page>.png` to see how the page is used, `cost_<page>.png` to see where the paths went, with [`OutputFormat::Exr`] `lightmap_<page>.exr` to measure with,
 /// `meshes.kiln` if the bake laid meshes out anew, and `kiln.ron`, which says where each object lies. `scene_name` is the caller's own word for the scene.
 ///
 /// All files are complete on the disk before the first takes its place, and the manifest takes its place last: what
@@ -57,6 +57,7 @@ pub fn write_lightmap(
         staged.push(Staged::write(&dir.join(page_file(index, "ktx2")), |file| file.write_all(&map))?);
         staged.push(Staged::write(&dir.join(page_file(index, "png")), |file| png::write_preview(page, file))?);
         staged.push(Staged::write(&dir.join(overview_file(index)), |file| overview::write_overview(page, file))?);
+        staged.push(Staged::write(&dir.join(format!("cost_{index}.png")), |file| cost::write_cost(page, file))?);
         if matches!(format, OutputFormat::Exr) {
             clamped_in_exr += exr::count_clamped(page);
             staged.push(Staged::write(&dir.join(page_file(index, "exr")), |file| exr::write_page(page, file))?);
@@ -176,9 +177,11 @@ mod tests {
             "lightmap_0.ktx2",
             "lightmap_0.png",
             "overview_0.png",
+            "cost_0.png",
             "lightmap_1.ktx2",
             "lightmap_1.png",
             "overview_1.png",
+            "cost_1.png",
             "kiln.ron",
         ]
         .map(|n| dir.join(n));
@@ -186,7 +189,7 @@ mod tests {
             written,
             WrittenLightmap { files: expected.to_vec(), warnings: vec![], clamped: 0, compression: None }
         );
-        assert_eq!(names(&dir).len(), 7);
+        assert_eq!(names(&dir).len(), 9);
 
         let manifest = Manifest::from_ron(&fs::read_to_string(dir.join(MANIFEST_FILE)).unwrap()).unwrap();
         assert_eq!(manifest.scene, "room.glb");
@@ -267,7 +270,7 @@ mod tests {
         write_lightmap(&lightmap, "a", other.path(), OutputFormat::Rgb9e5).unwrap();
         assert_eq!(
             names(folder.path()),
-            ["kiln.ron", "lightmap_0.exr", "lightmap_0.ktx2", "lightmap_0.png", "overview_0.png"]
+            ["cost_0.png", "kiln.ron", "lightmap_0.exr", "lightmap_0.ktx2", "lightmap_0.png", "overview_0.png"]
         );
         for name in names(other.path()) {
             assert_eq!(fs::read(folder.path().join(&name)).unwrap(), fs::read(other.path().join(&name)).unwrap());

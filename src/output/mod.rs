@@ -6,6 +6,7 @@
 
 mod bc6h;
 mod compression;
+mod cost;
 mod error;
 mod exr;
 mod format;

@@ -60,9 +60,9 @@ pub use display::{
 
 #[cfg(feature = "bake")]
 pub use baking::{
-    AmbientMode, BakeFailed, BakeFinished, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps, EmissiveUnit,
-    Extraction, ExtractionWarning, LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver, RangeWindow,
-    SceneSettings, Unreadable, Unsimulated, extract_scene,
+    AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps,
+    EmissiveUnit, Extraction, ExtractionWarning, LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver,
+    RangeWindow, SceneSettings, Unreadable, Unsimulated, extract_scene,
 };
 
 use bevy::prelude::*;

@@ -69,6 +69,9 @@ fn numbers_that_are_none_get_a_sentence() {
     let scene = data("cornell.glb");
     let scene = scene.to_str().unwrap();
     for (arguments, sentence) in [
+        (["--error", "2"], "such as 2% or 0.02"),
+        (["--error", "-2%"], "such as 2% or 0.02"),
+        (["--time", "5"], "such as 90s, 5m"),
         (["--spp", "0"], "a whole number from 1"),
         (["--spp", "-4"], "a whole number from 1"),
         (["--threads", "0"], "leave it out for all cores"),

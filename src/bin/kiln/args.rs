@@ -1,6 +1,7 @@
 //! The command line as data.
 
 use crate::parse;
+use bevy_kiln::bake::Goal;
 use bevy_kiln::output::{OutputFormat, ToneCurve};
 use bevy_kiln::plugin::EmissiveUnit;
 use bevy_kiln::trace::Effect;
@@ -8,6 +9,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::Vec3;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Bakes global illumination for Bevy.
 #[derive(Debug, Parser)]
@@ -136,9 +138,32 @@ pub(crate) struct LayoutArgs {
     /// Largest width and height of a texture, 64 to 4096 [texels]
     #[arg(long, value_name = "N", default_value_t = 4096, allow_hyphen_values = true)]
     pub(crate) page_size: u32,
-    /// Paths that start in each texel
-    #[arg(long, value_name = "N", default_value = "256", value_parser = parse::count, allow_hyphen_values = true)]
-    pub(crate) spp: NonZeroU32,
+}
+
+/// When a texel has been sampled enough.
+#[derive(Debug, Args)]
+pub(crate) struct GoalArgs {
+    /// How wrong a texel may be: in 95 of 100 cases the truth is no farther off than this share of its value [default:
+    /// 2%]
+    #[arg(long, value_name = "E%", value_parser = parse::error, allow_hyphen_values = true, conflicts_with_all = ["time", "spp"])]
+    pub(crate) error: Option<f64>,
+    /// How long it may take, such as 90s, 5m or 1h: gives the smallest error that a pilot says can be had in it
+    #[arg(long, value_name = "T", value_parser = parse::time, allow_hyphen_values = true, conflicts_with = "spp")]
+    pub(crate) time: Option<Duration>,
+    /// Paths that start in each texel, instead of an error
+    #[arg(long, value_name = "N", value_parser = parse::count, allow_hyphen_values = true)]
+    pub(crate) spp: Option<NonZeroU32>,
+}
+
+impl GoalArgs {
+    pub(crate) fn goal(&self) -> Goal {
+        match (self.error, self.time, self.spp) {
+            (Some(error), ..) => Goal::Error(error),
+            (_, Some(time), _) => Goal::Time(time),
+            (.., Some(paths)) => Goal::Samples(paths.get()),
+            _ => Goal::default(),
+        }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -150,16 +175,14 @@ pub(crate) struct BakeArgs {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) layout: LayoutArgs,
+    #[command(flatten)]
+    pub(crate) goal: GoalArgs,
     /// How texels are stored: rgb9e5, rgba16f, bc6h (compressed, a quarter of rgb9e5), or exr (rgb9e5 and f32 EXR besides)
     #[arg(long, value_name = "rgb9e5|rgba16f|bc6h|exr", default_value_t)]
     pub(crate) format: OutputFormat,
     /// End standard output with one JSON object
     #[arg(long)]
     pub(crate) json: bool,
-    #[arg(long, hide = true)]
-    pub(crate) error: Option<String>,
-    #[arg(long, hide = true)]
-    pub(crate) time: Option<String>,
     /// Say how far the bake is from this one: a folder of the same scene and density, with many more samples and
     /// --format exr
     #[arg(long, value_name = "DIR")]
@@ -179,6 +202,8 @@ pub(crate) struct PlanArgs {
     pub(crate) scene: SceneArgs,
     #[command(flatten)]
     pub(crate) layout: LayoutArgs,
+    #[command(flatten)]
+    pub(crate) goal: GoalArgs,
     /// End standard output with one JSON object
     #[arg(long)]
     pub(crate) json: bool,

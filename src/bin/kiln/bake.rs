@@ -13,7 +13,7 @@ use serde_json::json;
 pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> {
     let talk = Talk::beside(args.json);
     let denoise = if args.no_denoise { Denoise::Off } else { Denoise::default() };
-    let settings = BakeSettings { denoise, ..scene::bake_settings(&args.scene, &args.layout)? };
+    let settings = BakeSettings { denoise, ..scene::bake_settings(&args.scene, &args.layout, &args.goal)? };
     if args.output.is_file() {
         let path = args.output.display();
         return Err(Failure::Failed(format!("{path} is a file, not a folder; name another folder or move it away")));
@@ -81,6 +81,12 @@ fn summary(
         "cpu_seconds": report.cpu_seconds,
         "wall_seconds": report.wall_seconds,
         "relative_stderr": error(&report.relative_stderr),
+        "intervals": {
+            "target": report.intervals.target,
+            "floor": report.intervals.floor,
+            "half_width": error(&report.intervals.half_width),
+            "missed": report.intervals.missed,
+        },
         "denoised": report.denoised.map(|denoised| {
             json!({ "before": error(&denoised.before), "after": error(&denoised.after) })
         }),

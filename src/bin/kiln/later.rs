@@ -7,8 +7,6 @@ use crate::failure::Failure;
 pub(crate) fn refuse(verb: &Verb) -> Result<(), Failure> {
     let asked = match verb {
         Verb::Bake(args) => vec![
-            (args.error.is_some(), "--error", "ask for paths with --spp N"),
-            (args.time.is_some(), "--time", "ask for paths with --spp N"),
             (args.resume, "--resume", "bake from the start"),
             (args.shard.is_some(), "--shard", "bake the whole scene"),
         ],

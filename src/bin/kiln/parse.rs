@@ -5,6 +5,7 @@ use bevy_kiln::plugin::EmissiveUnit;
 use bevy_kiln::trace::Effect;
 use glam::Vec3;
 use std::num::{NonZeroU32, NonZeroUsize};
+use std::time::Duration;
 
 pub(crate) fn emissive(text: &str) -> Result<EmissiveUnit, String> {
     let unknown = || "use nits, displayed or displayed=EV100, such as displayed=9.7".to_owned();
@@ -40,6 +41,29 @@ pub(crate) fn max_bounces(text: &str) -> Result<Bounces, String> {
 
 pub(crate) fn count(text: &str) -> Result<NonZeroU32, String> {
     text.parse().map_err(|_| format!("give a whole number from 1 to {}", u32::MAX))
+}
+
+pub(crate) fn error(text: &str) -> Result<f64, String> {
+    let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
+    let share = match text.strip_suffix('%') {
+        Some(percent) => number(percent).map(|percent| percent / 100.0),
+        // A plain 2 could be meant as 2 % or as twice the value.
+        None => number(text).filter(|share| *share < 1.0),
+    };
+    share.ok_or_else(|| "give a share of the value, such as 2% or 0.02".to_owned())
+}
+
+pub(crate) fn time(text: &str) -> Result<Duration, String> {
+    let unknown = || "give a time with its unit, such as 90s, 5m or 1.5h".to_owned();
+    let (number, unit) = text.split_at(text.find(|c: char| c.is_ascii_alphabetic()).ok_or_else(unknown)?);
+    let seconds = match unit {
+        "s" => 1.0,
+        "m" | "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(unknown()),
+    };
+    let number: f64 = number.trim().parse().map_err(|_| unknown())?;
+    Duration::try_from_secs_f64(number * seconds).ok().filter(|time| !time.is_zero()).ok_or_else(unknown)
 }
 
 pub(crate) fn threads(text: &str) -> Result<NonZeroUsize, String> {
@@ -92,6 +116,11 @@ mod tests {
         assert_eq!(max_bounces("0").map(|b| b.0), Ok(Some(0)));
         assert!(max_bounces("-1").is_err());
         assert!(count("0").is_err() && count("7").is_ok_and(|n| n.get() == 7) && threads("0").is_err());
+        assert_eq!((error("2%"), error("0.5 %"), error("0.02")), (Ok(0.02), Ok(0.005), Ok(0.02)));
+        assert!(["2", "-2%", "0%", "nan%", "", "%"].into_iter().all(|text| error(text).is_err()));
+        let seconds = |text| time(text).map(|time| time.as_secs_f64());
+        assert_eq!((seconds("90s"), seconds("5m"), seconds("1.5h")), (Ok(90.0), Ok(300.0), Ok(5400.0)));
+        assert!(["5", "m", "-5m", "0s", "5 parsecs", "1e99h"].into_iter().all(|text| time(text).is_err()));
         assert!(seed("-1").is_err() && seed("18446744073709551615") == Ok(u64::MAX));
         assert_eq!(size("640x480"), Ok((640, 480)));
         assert!(size("0x1").is_err() && size("640").is_err());

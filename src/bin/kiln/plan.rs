@@ -8,7 +8,7 @@ use bevy_kiln::bake::{BakePlan, CancelToken};
 use serde_json::json;
 
 pub(crate) fn run(args: &PlanArgs, cancel: &CancelToken) -> Result<(), Failure> {
-    let settings = scene::bake_settings(&args.scene, &args.layout)?;
+    let settings = scene::bake_settings(&args.scene, &args.layout, &args.goal)?;
     let extraction = scene::open(&args.scene, cancel)?;
     let mut warnings: Vec<String> = extraction.warnings.iter().map(ToString::to_string).collect();
     // First of all, as they may be why there is no plan.

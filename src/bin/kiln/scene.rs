@@ -1,6 +1,6 @@
 //! The scene that the arguments ask for, through the plugin's one way in.
 
-use crate::args::{EstimatorArg, LayoutArg, LayoutArgs, SceneArgs};
+use crate::args::{EstimatorArg, GoalArgs, LayoutArg, LayoutArgs, SceneArgs};
 use crate::failure::Failure;
 use bevy_kiln::bake::{BakeSettings, CancelToken, Layout};
 use bevy_kiln::plugin::windowless::{load_environment, open_scene, unread_parts};
@@ -48,7 +48,7 @@ pub(crate) fn transport(args: &SceneArgs) -> Transport {
     Transport { estimator, max_bounces: args.max_bounces.0, seed: args.seed, clamp: args.clamp, effects }
 }
 
-pub(crate) fn bake_settings(scene: &SceneArgs, layout: &LayoutArgs) -> Result<BakeSettings, Failure> {
+pub(crate) fn bake_settings(scene: &SceneArgs, layout: &LayoutArgs, goal: &GoalArgs) -> Result<BakeSettings, Failure> {
     let layout_kind = match (layout.layout, layout.size) {
         (LayoutArg::Packed, None) => Layout::Packed,
         (LayoutArg::Packed, Some(_)) => {
@@ -58,7 +58,7 @@ pub(crate) fn bake_settings(scene: &SceneArgs, layout: &LayoutArgs) -> Result<Ba
     };
     let settings = BakeSettings {
         transport: transport(scene),
-        samples_per_texel: layout.spp.get(),
+        goal: goal.goal(),
         density: layout.density,
         layout: layout_kind,
         max_page_size: layout.page_size,

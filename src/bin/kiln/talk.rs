@@ -1,6 +1,6 @@
 //! What a person reads.
 
-use bevy_kiln::bake::{BakePlan, BakeReport};
+use bevy_kiln::bake::{BakePlan, BakeReport, Intervals};
 use bevy_kiln::trace::Effect;
 use std::fmt::Display;
 use std::io::Write;
@@ -60,6 +60,9 @@ impl Talk {
             100.0 * error.p95,
             100.0 * error.max
         ));
+        if report.intervals != Intervals::default() {
+            self.intervals(&report.intervals);
+        }
         if let Some(taken) = report.clamped_light {
             self.say(format_args!("  the clamp took {:.3} % of the light", 100.0 * taken));
         }
@@ -76,6 +79,23 @@ impl Talk {
 }
 
 impl Talk {
+    /// How well texels are known.
+    fn intervals(self, intervals: &Intervals) {
+        let [mean, p95, max] =
+            [intervals.half_width.mean, intervals.half_width.p95, intervals.half_width.max].map(|width| 100.0 * width);
+        self.say(format_args!(
+            "  95 % intervals: ± {mean:.2} % of the value in the mean, 95 % within {p95:.2} %, worst {max:.2} %"
+        ));
+        if let Some(target) = intervals.target {
+            let missed = match intervals.missed {
+                0 => "every texel is within it".to_owned(),
+                missed => format!("{missed} texels are not, with as many paths as one may have"),
+            };
+            let floor = intervals.floor;
+            self.say(format_args!("  target: {:.2} %, of {floor:.3} cd/m² at least; {missed}", 100.0 * target));
+        }
+    }
+
     /// How the texels are laid out, and what was done to them once they were measured.
     pub(crate) fn repair(self, report: &BakeReport) {
         let pages = if report.pages == 1 { "page" } else { "pages" };

@@ -8,7 +8,8 @@ mod settings;
 mod write_back;
 
 pub use events::{
-    BakeFailed, BakeFinished, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps, LightmapFormat, LightmapLayout,
+    BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps, LightmapFormat,
+    LightmapLayout,
 };
 pub use extract::{Extraction, ExtractionWarning, Unreadable, Unsimulated, extract_scene};
 pub use markers::{LightBlocker, LightmapReceiver};
