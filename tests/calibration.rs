@@ -18,7 +18,11 @@ mod scenes;
 use bevy_kiln::bake::{BakeSettings, CancelToken, Denoise, Goal, Lightmap, bake_lightmap};
 use bevy_kiln::trace::Transport;
 use judge::{Calibration, Truth};
+use reference::Known;
 use scenes::Case;
+
+/// Bakes with other random numbers each.
+const SEEDS: u64 = 32;
 
 fn bake(case: &Case, goal: Goal, seed: u64) -> Lightmap {
     let settings = BakeSettings {
@@ -39,22 +43,88 @@ fn calibration(case: &Case, goal: Goal, seeds: u64) -> Calibration {
     Calibration::of(&bakes)
 }
 
+/// Intervals of texels with so many paths each.
+fn assert_intervals(case: &Case, samples: u32) {
+    let seen = calibration(case, Goal::Samples(samples), SEEDS);
+    println!("{}, {samples} paths: {seen}", case.name);
+    let faults = judge::faults_of_intervals(&seen);
+    assert!(faults.is_empty(), "{}, {samples} paths: {faults:?}", case.name);
+}
+
+/// Texels that were sampled to an error.
+fn assert_target(case: &Case, target: f64) {
+    let seen = calibration(case, Goal::Error(target), SEEDS);
+    println!("{}, to {target}: {seen}", case.name);
+    let faults = judge::faults_of_target(&seen, target);
+    assert!(faults.is_empty(), "{}, to {target}: {faults:?}", case.name);
+}
+
+fn assert_case(case: &Case, samples: u32) {
+    assert_intervals(case, samples);
+    assert_target(case, case.targets[0]);
+}
+
 #[test]
-#[ignore = "a table to read: minutes"]
-fn table() {
-    let only = std::env::var("ONLY").unwrap_or_default();
-    for case in scenes::all().into_iter().filter(|case| case.name.contains(&only)) {
-        for (goal, seeds) in [
-            (Goal::Samples(64), 16),
-            (Goal::Samples(256), 16),
-            (Goal::Error(0.2), 16),
-            (Goal::Error(0.1), 16),
-            (Goal::Error(0.05), 8),
-            (Goal::Error(0.02), 4),
-        ] {
-            println!("{} {goal:?}: {}", case.name, calibration(&case, goal, seeds));
-        }
+fn cornell_box() {
+    assert_case(&scenes::cornell(), 256);
+}
+
+#[test]
+fn room_in_the_sun() {
+    assert_case(&scenes::sunlit(), 256);
+}
+
+#[test]
+fn round_things_under_many_lamps() {
+    assert_case(&scenes::lamps(), 256);
+}
+
+#[test]
+fn garden_under_a_picture_of_the_sky() {
+    assert_case(&scenes::garden(), 64);
+}
+
+#[test]
+fn room_behind_a_slit() {
+    assert_case(&scenes::slit(), 256);
+}
+
+/// More paths, and smaller errors.
+#[test]
+#[ignore = "half an hour of paths"]
+fn all_targets() {
+    for case in scenes::all() {
+        assert_intervals(&case, 512);
+        case.targets[1..].iter().for_each(|&target| assert_target(&case, target));
     }
+}
+
+/// Who looks after 16, 32, 64 … paths at each texel's own spread and stops at the first that is small.
+fn hasty(case: &Case, target: f64, seed: u64) -> Truth {
+    let known = reference::load(case.name);
+    let rounds: Vec<Lightmap> = (4..11).map(|power| bake(case, Goal::Samples(1 << power), seed)).collect();
+    let last = &rounds[rounds.len() - 1];
+    // All is grey in there, so that every channel is the luminance.
+    let of_round = |round: &Lightmap, known: &Known| {
+        let page = &round.pages[0];
+        [f64::from(page.raw[known.texel].x), 1.96 * f64::from(page.stderr[known.texel].x)]
+    };
+    let goal = bake(case, Goal::Error(target), seed);
+    Truth::new(&goal, &known).left_at(&known, |known| {
+        let is_small = |&[value, half_width]: &[f64; 2]| half_width <= target * value.max(goal.report.intervals.floor);
+        rounds.iter().map(|round| of_round(round, known)).find(is_small).unwrap_or_else(|| of_round(last, known))
+    })
+}
+
+#[test]
+fn stopping_at_the_first_small_variance_is_found_out() {
+    let case = scenes::slit();
+    let target = case.targets[0];
+    let bakes: Vec<Truth> = (1..=4).map(|seed| hasty(&case, target, seed)).collect();
+    let seen = Calibration::of(&bakes);
+    println!("hasty: {seen}");
+    let faults = judge::faults_of_target(&seen, target);
+    assert!(faults.iter().any(|fault| fault.contains("covered")), "{faults:?}");
 }
 
 #[test]

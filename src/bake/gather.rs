@@ -73,6 +73,8 @@ pub(super) struct Estimate {
     pub(super) endless: u64,
     /// Half the width of the interval of luminance that holds the truth in 95 of 100 cases [cd/m²].
     pub(super) half_width: f64,
+    /// The luminance that its error is relative to [cd/m²].
+    pub(super) level: f64,
 }
 
 impl Estimate {

@@ -8,10 +8,10 @@
 use super::gather::Estimate;
 use super::plan::Prediction;
 use super::sites::Site;
-use super::tiles::{ErrorTarget, LEAST_PATHS, MOST_PATHS, Rounds, Tile};
+use super::tiles::{ErrorTarget, LEAST_PATHS, Looks, MOST_PATHS, Rounds, Tile};
 use super::workers::Workers;
 use super::{BakeError, CancelToken, DARK};
-use crate::math::{Portable, luminance};
+use crate::math::Portable;
 use crate::trace::{Tracer, Transport};
 use cpu_time::ThreadTime;
 use std::time::Instant;
@@ -93,13 +93,14 @@ impl Surveyed<'_> {
         let mut half_widths = vec![[0.0; ROUNDS]; tile.sites.len()];
         for round in 0..ROUNDS {
             rounds.sample(paths_of(round), |_| true, cancel)?;
+            rounds.pool(Looks::Many);
             let widths = half_widths.iter_mut().zip(&rounds.estimates);
             widths.for_each(|(widths, estimate)| widths[round] = estimate.half_width);
         }
         let paths: u64 = rounds.estimates.iter().map(|estimate| estimate.samples).sum();
         let seconds_per_path = clock.elapsed().as_secs_f64() / paths.max(1) as f64;
         let texel = |(estimate, half_widths): (&Estimate, [f64; ROUNDS])| Texel {
-            value: luminance(estimate.mean),
+            value: estimate.level,
             half_widths,
             seconds_per_path,
         };

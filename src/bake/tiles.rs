@@ -4,20 +4,27 @@
 //! texel whose interval is narrow enough takes no part in the next. Nothing but a tile's own texels has a say in that,
 //! so threads and the order of tiles cannot matter, and no more runs are held than those of the tiles in work.
 //!
-//! The interval of a texel is Student's, by the spread of its runs. By chance a spread comes out too small, and who
-//! looks after each round and stops at the first small one picks just these (Wald 1945 on tests that look again and
-//! again). So the variance of a texel counts as no smaller than the mean over it and those around it in its tile and
-//! chart, each scaled to the texel's number of paths: nine texels together have 135 degrees of freedom, which are not
-//! small by chance. Where a texel is noisier than those around it its own variance stands. `tests/calibration` holds
-//! what comes of it against long references.
+//! The interval of a texel goes by the spread of its runs. By chance a spread comes out too small: where a path in
+//! thousands brings all the light, most runs agree that there is none. And who looks after each round and stops at the
+//! first small spread picks just these (Wald 1945 on tests that look again and again). So the variance of a texel counts
+//! as no smaller than the mean over it and those around it in its tile and chart, each scaled to the texel's number of
+//! paths: nine texels together have 135 degrees of freedom, which are not small by chance. Where a texel is noisier than
+//! those around it its own variance stands. How many standard errors that makes is `quantile`'s.
+//!
+//! A texel that comes out bright by chance would be allowed a larger error, stop, and stay too bright. What an error is
+//! relative to is therefore the mean over those around it, as far as the texel's own interval allows.
+//! `tests/calibration` holds what comes of all this against long references.
 
+mod quantile;
+
+pub(super) use quantile::Looks;
+
+use super::CancelToken;
 use super::gather::{Estimate, Runs};
 use super::sites::Site;
-use super::{CancelToken, REPLICATES};
-use crate::math::{luminance, student_t_two_sided_95};
+use crate::math::luminance;
 use crate::trace::{Tracer, Transport};
 use std::collections::BTreeMap;
-use std::sync::LazyLock;
 
 /// Side of a tile [texels].
 const SIDE: u32 = 8;
@@ -27,14 +34,6 @@ pub(super) const LEAST_PATHS: u32 = 64;
 
 /// The most paths that a texel gets.
 pub(super) const MOST_PATHS: u32 = 1 << 20;
-
-/// Texels whose variances are pooled, at most.
-const MOST_POOLED: usize = 9;
-
-/// By how many standard errors an estimate may miss the truth in 95 of 100 cases, by how many texels were pooled.
-static QUANTILES: LazyLock<[f64; MOST_POOLED + 1]> = LazyLock::new(|| {
-    std::array::from_fn(|pooled| student_t_two_sided_95(f64::from(REPLICATES - 1) * pooled.max(1) as f64))
-});
 
 /// How well texels are to be known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +61,7 @@ impl ErrorTarget {
 
     /// What the error of a texel is relative to [cd/m²].
     pub(super) fn value(self, estimate: &Estimate) -> f64 {
-        luminance(estimate.mean).max(self.floor)
+        estimate.level.max(self.floor)
     }
 }
 
@@ -113,7 +112,10 @@ impl Tile {
     ) -> Option<Vec<Estimate>> {
         let mut rounds = Rounds::new(self, sites, tracer, transport);
         match until {
-            Until::Samples(count) => rounds.sample(count, |_| true, cancel)?,
+            Until::Samples(count) => {
+                rounds.sample(count, |_| true, cancel)?;
+                rounds.pool(Looks::One);
+            }
             Until::Error(target) => {
                 let mut paths = LEAST_PATHS;
                 while paths <= MOST_PATHS {
@@ -126,6 +128,7 @@ impl Tile {
                         break;
                     }
                     rounds.sample(paths, |place| is_open[place], cancel)?;
+                    rounds.pool(Looks::Many);
                     paths *= 2;
                 }
             }
@@ -163,20 +166,30 @@ impl<'a> Rounds<'a> {
                 self.estimates[place] = runs.estimate();
             }
         }
-        let widths: Vec<f64> = (0..self.estimates.len()).map(|place| self.half_width(place)).collect();
-        self.estimates.iter_mut().zip(widths).for_each(|(estimate, width)| estimate.half_width = width);
         Some(())
     }
 
-    /// Half the width of the 95 % interval of a texel's luminance [cd/m²].
-    fn half_width(&self, place: usize) -> f64 {
-        let of_one_path =
-            |place: usize| self.estimates[place].luminance_error.powi(2) * self.estimates[place].samples as f64;
-        let around = &self.tile.around[place];
-        let own = of_one_path(place);
-        let pooled = own + around.iter().map(|&other| of_one_path(other.into())).sum::<f64>();
-        let count = around.len() + 1;
-        let variance = own.max(pooled / count as f64) / self.estimates[place].samples.max(1) as f64;
-        QUANTILES[count.min(MOST_POOLED)] * variance.sqrt()
+    /// Makes intervals and levels of texels and those around them.
+    pub(super) fn pool(&mut self, looks: Looks) {
+        let pooled: Vec<[f64; 2]> = (0..self.estimates.len()).map(|place| self.pooled(place, looks)).collect();
+        for (estimate, [half_width, level]) in self.estimates.iter_mut().zip(pooled) {
+            (estimate.half_width, estimate.level) = (half_width, level);
+        }
+    }
+
+    /// Half the width of the 95 % interval of a texel's luminance, and what its error is relative to [cd/m²].
+    fn pooled(&self, place: usize, looks: Looks) -> [f64; 2] {
+        let around = || std::iter::once(place).chain(self.tile.around[place].iter().map(|&other| other.into()));
+        let count = around().count();
+        let mean =
+            |of: &dyn Fn(&Estimate) -> f64| around().map(|at| of(&self.estimates[at])).sum::<f64>() / count as f64;
+        let of_one_path = |estimate: &Estimate| estimate.luminance_error.powi(2) * estimate.samples as f64;
+        let own = &self.estimates[place];
+        let variance = of_one_path(own).max(mean(&of_one_path)) / own.samples.max(1) as f64;
+        let half_width = looks.quantile(count) * variance.sqrt();
+        let value = luminance(own.mean);
+        let others = (count as f64 * mean(&|estimate| luminance(estimate.mean)) - value) / (count - 1).max(1) as f64;
+        let level = if count > 1 { others.clamp(value - half_width, value + half_width) } else { value };
+        [half_width, level]
     }
 }

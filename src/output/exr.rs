@@ -163,10 +163,20 @@ mod tests {
 
     #[test]
     fn a_page_comes_back_exactly() {
-        let page = page(7, 35);
+        let plain = page(7, 35);
+        let counts = || (0..7 * 35).map(|index| index * index);
+        let page = Page {
+            half_width: counts().map(|count| 0.01 * count as f32).collect(),
+            samples: counts().collect(),
+            rays: counts().map(|count| 9 * u64::from(count)).collect(),
+            ..plain
+        };
         let (size, channels) = channels(bytes(|to| write_page(&page, to)));
         assert_eq!(size, Vec2(7, 35));
-        assert_eq!(channels.len(), 10);
+        assert_eq!(channels.len(), 13);
+        assert_eq!(channels["interval.Y"], page.half_width);
+        assert!(channels["cost.samples"].iter().zip(&page.samples).all(|(a, b)| *a == *b as f32));
+        assert!(channels["cost.rays"].iter().zip(&page.rays).all(|(a, b)| *a == *b as f32));
         assert_eq!(layer(&channels, ""), page.radiance);
         assert_eq!(layer(&channels, "raw."), page.raw);
         assert_eq!(layer(&channels, "stderr."), page.stderr);

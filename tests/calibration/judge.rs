@@ -28,6 +28,15 @@ pub struct Texel {
 }
 
 impl Truth {
+    /// The same texels, had each been left at another value and interval.
+    pub fn left_at(&self, known: &[Known], left: impl Fn(&Known) -> [f64; 2]) -> Self {
+        let texel = |(known, texel): (&Known, &Texel)| {
+            let [value, half_width] = left(known);
+            Texel { off: value - known.value, half_width, ..*texel }
+        };
+        Self { texels: known.iter().zip(&self.texels).map(texel).collect(), ..self.clone() }
+    }
+
     pub fn new(lightmap: &Lightmap, known: &[Known]) -> Self {
         let page = &lightmap.pages[0];
         let texel = |known: &Known| Texel {
@@ -95,6 +104,37 @@ impl Calibration {
             samples: mean(&|bake| bake.samples),
         }
     }
+}
+
+/// What must hold of intervals at a fixed number of paths.
+pub fn faults_of_intervals(seen: &Calibration) -> Vec<String> {
+    let [covered, error] = seen.covered;
+    // Four standard errors counted in, or too few bakes would pass for good ones.
+    let is_off = covered - 4.0 * error < 0.93 || covered + 4.0 * error > 0.97;
+    is_off.then(|| format!("{:.2} ± {:.2} % are covered", 100.0 * covered, 100.0 * error)).into_iter().collect()
+}
+
+/// What must hold of texels that were sampled until they were known to `target`.
+pub fn faults_of_target(seen: &Calibration, target: f64) -> Vec<String> {
+    let [covered, error] = seen.covered;
+    let [bias, bias_error] = seen.bias;
+    let mut faults = Vec::new();
+    if covered - 4.0 * error < 0.93 {
+        faults.push(format!("{:.2} ± {:.2} % are covered", 100.0 * covered, 100.0 * error));
+    }
+    if seen.width > 1.5 {
+        faults.push(format!("intervals are {:.2} times as wide as the error", seen.width));
+    }
+    if seen.exceeding > 0.07 {
+        faults.push(format!("{:.2} % exceed the target", 100.0 * seen.exceeding));
+    }
+    if bias.abs() + 4.0 * bias_error > 0.1 * target {
+        faults.push(format!("the mean is off by {:.3} ± {:.3} %", 100.0 * bias, 100.0 * bias_error));
+    }
+    if seen.long > 0.1 * target {
+        faults.push(format!("the reference is only known to {:.3} %", 100.0 * seen.long));
+    }
+    faults
 }
 
 impl fmt::Display for Calibration {

@@ -108,6 +108,29 @@ fn threads_that_are_held_up() {
     }
 }
 
+/// Texels that are sampled to an error: how many paths each gets, and all that comes of them.
+#[test]
+fn threads_that_sample_to_an_error() {
+    let scene = vitrine();
+    let settings = |threads| BakeSettings {
+        goal: Goal::Error(0.5),
+        density: 3.0,
+        threads: NonZeroUsize::new(threads),
+        ..BakeSettings::default()
+    };
+    let bake = |threads| bake_lightmap(&scene, &settings(threads), &(), &CancelToken::default()).unwrap();
+    let one = bake(1);
+    let counts: std::collections::BTreeSet<u32> = one.pages.iter().flat_map(|page| page.samples.clone()).collect();
+    assert!(counts.len() > 3, "all texels had the same paths: {counts:?}");
+    for threads in [2, 8] {
+        let other = bake(threads);
+        assert_same(&one, &other);
+        for (a, b) in one.pages.iter().zip(&other.pages) {
+            assert!(a.samples == b.samples && a.rays == b.rays && a.half_width == b.half_width);
+        }
+    }
+}
+
 /// The texels of one object, without what its neighbours on the page add beside it.
 fn own_texels(lightmap: &Lightmap, id: &str) -> Vec<[u32; 7]> {
     let place = lightmap.placements.iter().find(|place| place.id.as_str() == id).unwrap();

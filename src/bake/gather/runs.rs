@@ -25,8 +25,6 @@ pub(in crate::bake) struct Runs {
     /// Paths of each run that were not refused.
     accepted: u64,
     tally: Tally,
-    /// What the clamp took, as luminance.
-    taken: f64,
     not_light: u64,
 }
 
@@ -34,6 +32,8 @@ pub(in crate::bake) struct Runs {
 #[derive(Clone, Copy, Debug, Default)]
 struct Run {
     sum: DVec3,
+    /// What the clamp took, as luminance.
+    taken: f64,
     /// Place in the sequence.
     index: u64,
 }
@@ -42,7 +42,7 @@ impl Runs {
     /// None yet. A path may bring at most `clamp` in its strongest channel.
     pub(in crate::bake) fn new(key: u64, clamp: Option<f32>) -> Self {
         let runs = [Run::default(); REPLICATES as usize];
-        Self { key, clamp, runs, accepted: 0, tally: Tally::default(), taken: 0.0, not_light: 0 }
+        Self { key, clamp, runs, accepted: 0, tally: Tally::default(), not_light: 0 }
     }
 
     /// Carries on until there are at least `count` paths in all. `path` gives one path's value for its numbers and
@@ -72,7 +72,7 @@ impl Runs {
                     continue;
                 }
                 let kept = clamped(value, self.clamp);
-                self.taken += luminance(value - kept);
+                run.taken += luminance(value - kept);
                 run.sum += kept.as_dvec3();
             }
         }
@@ -102,10 +102,11 @@ impl Runs {
             samples,
             rays: self.tally.rays,
             accepted: samples as f64 / tries.max(1) as f64,
-            clamped: self.taken / samples.max(1) as f64,
+            clamped: self.runs.iter().map(|run| run.taken).sum::<f64>() / samples.max(1) as f64,
             not_light: self.not_light,
             endless: self.tally.endless,
             half_width: *QUANTILE * luminance_error,
+            level: luminance(mean),
         }
     }
 }
