@@ -173,3 +173,44 @@ impl Survey {
         paths
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Texels of value 1 whose intervals are `width` wide after the first round and fall with a power of the paths.
+    fn survey(width: f64, power: f64) -> Survey {
+        let half_widths = std::array::from_fn(|round| width * Portable::powf(f64::from(1_u32 << round), -power));
+        let texel = Texel { value: 1.0, half_widths, seconds_per_path: 1e-6 };
+        Survey::new(vec![texel; 10], 1000, 10.0 * 1e-6 * f64::from(paths_of(ROUNDS - 1)))
+    }
+
+    #[test]
+    fn prices_follow_the_power_that_the_rounds_show() {
+        for power in [0.5, 0.7] {
+            let survey = survey(0.3, power);
+            assert!((survey.exponent - power).abs() < 1e-6, "{}", survey.exponent);
+            // Within the rounds, and far beyond them: the next round that is narrow enough.
+            for error in [0.25, 0.1, 0.01] {
+                let needed = f64::from(LEAST_PATHS) * Portable::powf(0.3 / error, 1.0 / power);
+                let paths = f64::from((needed.ceil() as u32).next_power_of_two());
+                let seconds = survey.seconds(error);
+                assert!((seconds / (1000.0 * 1e-6 * paths) - 1.0).abs() < 1e-6, "{power} {error}: {seconds}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_time_buys_an_error_that_fits_it() {
+        let survey = survey(0.3, 0.5);
+        for seconds in [0.2, 5.0, 80.0] {
+            let error = survey.error_within(seconds);
+            assert!(survey.seconds(error) <= TRACING * seconds, "{seconds}: {error}");
+            // A person can ask for it again.
+            let digits = format!("{error:.1e}").parse::<f64>().unwrap();
+            assert!((digits / error - 1.0).abs() < 1e-9, "{error}");
+        }
+        // No time is too short or too long.
+        assert!(survey.error_within(0.0) <= 1.0 + 1e-9 && survey.error_within(1e12) >= 1e-4);
+    }
+}

@@ -4,6 +4,7 @@
 
 use super::png::write_rgb;
 use crate::bake::Page;
+use crate::math::Portable;
 use std::io::{self, Write};
 
 /// Least length of the picture's longer side [pixels].
@@ -42,7 +43,7 @@ fn colour(samples: u32) -> [u8; 3] {
     if samples == 0 {
         return [0; 3];
     }
-    let place = ((samples as f32).log2() - FIRST) / (LAST - FIRST);
+    let place = (Portable::log2(samples as f32) - FIRST) / (LAST - FIRST);
     let place = place.clamp(0.0, 1.0) * (SCALE.len() - 1) as f32;
     let step = (place as usize).min(SCALE.len() - 2);
     let share = place - step as f32;
