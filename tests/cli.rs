@@ -11,6 +11,8 @@ mod punctual;
 mod room;
 #[path = "cli/skies.rs"]
 mod skies;
+#[path = "cli/study.rs"]
+mod study;
 
 use glb::Glb;
 use serde_json::Value;

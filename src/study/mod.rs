@@ -230,7 +230,7 @@ fn receivers<'a>(
     let density = settings.bake.density * (most / texels).sqrt() as f32;
     left_out.push(format!(
         "The {} texels of {} per metre are left out for fewer, at {density:.2} per metre, of which whole bakes fit into \
-         the time. Errors per texel hold for both; times grow with the texels.",
+         the time. Errors per texel are about the same for both; times grow with the texels.",
         receivers.texels(),
         settings.bake.density
     ));

@@ -44,9 +44,9 @@ pub(super) fn whole_view(scene: &Scene, tracer: &Tracer) -> Camera {
         };
         Camera::look_at("a view of the whole scene", eye, middle - 0.15 * half * Vec3::Y, FOV)
     };
-    let mut best: Option<(usize, Camera)> = None;
+    let mut best: Option<(f32, Camera)> = None;
     for camera in EYES.into_iter().enumerate().map(camera) {
-        let score = fronts(tracer, &camera);
+        let score = seen(tracer, &camera, high - low);
         if best.as_ref().is_none_or(|(most, _)| score > *most) {
             best = Some((score, camera));
         }
@@ -54,8 +54,9 @@ pub(super) fn whole_view(scene: &Scene, tracer: &Tracer) -> Camera {
     best.map_or_else(|| Camera::look_at("origin", Vec3::ONE, Vec3::ZERO, FOV), |(_, camera)| camera)
 }
 
-/// How many rays of a coarse picture meet a surface from its front.
-fn fronts(tracer: &Tracer, camera: &Camera) -> usize {
+/// How much a coarse picture shows: the share of its rays that meet a surface from its front, times how much of the
+/// scene's length, height and depth these places span.
+fn seen(tracer: &Tracer, camera: &Camera, size: Vec3) -> f32 {
     let eye = Vec3::from(camera.world_from_camera.translation);
     let half_height = Portable::tan(0.5 * camera.vertical_fov);
     let ray = |cell: i32| {
@@ -63,9 +64,19 @@ fn fronts(tracer: &Tracer, camera: &Camera) -> usize {
         let local = Vec3::new(place(cell % RAYS) * half_height, place(cell / RAYS) * half_height, -1.0);
         camera.world_from_camera.transform_vector3(local).normalize()
     };
-    let is_front =
-        |direction: &Vec3| tracer.closest_hit(eye, *direction).is_some_and(|hit| hit.normal.dot(*direction) < 0.0);
-    (0..RAYS * RAYS).map(ray).filter(is_front).count()
+    let (mut count, mut low, mut high) = (0.0, Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for direction in (0..RAYS * RAYS).map(ray) {
+        let Some(hit) = tracer.closest_hit(eye, direction).filter(|hit| hit.normal.dot(direction) < 0.0) else {
+            continue;
+        };
+        let place = eye + hit.distance * direction;
+        (count, low, high) = (count + 1.0, low.min(place), high.max(place));
+    }
+    if count == 0.0 {
+        return 0.0;
+    }
+    let span = (high - low) / size.max(Vec3::splat(f32::MIN_POSITIVE));
+    count * span.min(Vec3::ONE).element_sum()
 }
 
 /// The box around all that is there [m].
@@ -80,4 +91,30 @@ fn bounds(scene: &Scene) -> [Vec3; 2] {
         }
     }
     if bounds[0].cmple(bounds[1]).all() { bounds } else { [Vec3::NEG_ONE, Vec3::ONE] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::box_of_light;
+    use super::*;
+
+    /// A closed room is seen from within, and what stands before an open one from outside.
+    #[test]
+    fn a_room_is_looked_into() {
+        let closed = box_of_light();
+        let eye = |scene: &Scene| Vec3::from(whole_view(scene, &Tracer::new(scene)).world_from_camera.translation);
+        assert!(eye(&closed).abs().max_element() < 1.0, "{}", eye(&closed));
+        for axis in 0..3 {
+            let mut open = closed.clone();
+            let is_wall = |z: f32| {
+                (0..6).find(|&side: &usize| {
+                    let normal = closed.instances[side].world_from_local.transform_vector3(Vec3::Y);
+                    normal[axis] * z > 0.5
+                })
+            };
+            let Some(wall) = is_wall(-1.0).filter(|_| axis != 1) else { continue };
+            open.instances.remove(wall);
+            assert!(eye(&open)[axis] > 1.0, "{axis}: {}", eye(&open));
+        }
+    }
 }

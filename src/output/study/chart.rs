@@ -1,14 +1,14 @@
 //! The plots of a study: errors of its techniques on logarithmic axes, each line labelled at its end.
 
 use super::sheet::{Drawing, Drawn, FRAME, GRID, Mark, QUIET, Sheet, Words};
-use super::words::{percent, time};
+use super::words::{grouped, percent, round, time};
 use crate::math::Portable;
 use crate::study::{Curve, Point, Standing, Study, Technique};
 use plotters::prelude::{DrawingBackend, RGBColor};
 
 /// Size of a plot, and its margins: left, top, right, bottom [pixels].
 const SIZE: [f64; 2] = [960.0, 560.0];
-const MARGINS: [f64; 4] = [82.0, 78.0, 232.0, 64.0];
+const MARGINS: [f64; 4] = [82.0, 78.0, 240.0, 64.0];
 
 /// Sizes of letters [pixels].
 const TITLE: f64 = 19.0;
@@ -65,7 +65,7 @@ impl Subject {
 
     fn label(self, technique: Technique) -> String {
         match (self, technique) {
-            (Self::Bounces, Technique::Mis) => "roulette, no cap (kiln bake)".into(),
+            (Self::Bounces, Technique::Mis) => "roulette (kiln bake)".into(),
             _ => technique.name(),
         }
     }
@@ -155,7 +155,8 @@ fn look(technique: Technique) -> (RGBColor, f64, Mark) {
         Technique::Mis => (RGBColor(0, 96, 160), 3.2, Mark::Disc),
         Technique::Denoised => (RGBColor(0, 122, 92), 2.4, Mark::Diamond),
         Technique::Independent => (RGBColor(150, 70, 120), 2.0, Mark::Wedge),
-        Technique::Light => (RGBColor(150, 104, 0), 2.0, Mark::Square),
+        // Broad, since what a bake does often lies on top.
+        Technique::Light => (RGBColor(150, 104, 0), 6.0, Mark::Square),
         Technique::Naive => (RGBColor(196, 72, 0), 2.0, Mark::Triangle),
         Technique::Capped(0) => (RGBColor(196, 72, 0), 2.0, Mark::Triangle),
         Technique::Capped(1) => (RGBColor(150, 104, 0), 2.0, Mark::Square),
@@ -176,9 +177,9 @@ impl Drawing for Chart<'_> {
         let conditions = &self.study.conditions;
         let about = format!(
             "{} of {} texels held against a reference of {} paths each (own error {})",
-            conditions.receivers,
-            conditions.texels,
-            self.study.reference.paths,
+            grouped(conditions.receivers as f64),
+            grouped(conditions.texels as f64),
+            grouped(f64::from(self.study.reference.paths)),
             percent(self.study.reference.error)
         );
         sheet.text(about, [left, 52.0], &Words::new(NUMBER).colour(QUIET))?;
@@ -200,8 +201,8 @@ impl Chart<'_> {
             plot.line(&[[x, 0.0], [x, height]], GRID, if is_numbered { 1.2 } else { 0.6 })?;
             if is_numbered {
                 let text = match self.subject {
-                    Subject::Paths => super::words::grouped(tick),
-                    Subject::Time | Subject::Bounces => time(tick).replace(".0 ", " "),
+                    Subject::Paths => grouped(tick),
+                    Subject::Time | Subject::Bounces => round(&time(tick)),
                 };
                 plot.text(text, [x, height + 14.0], &Words::new(NUMBER).colour(QUIET).centred())?;
             }
@@ -210,11 +211,7 @@ impl Chart<'_> {
             let [_, y] = self.place([self.across[0], tick]);
             plot.line(&[[0.0, y], [width, y]], GRID, if is_numbered { 1.2 } else { 0.6 })?;
             if is_numbered {
-                let text = percent(tick)
-                    .replace(".0 ", " ")
-                    .replace(".10 ", ".1 ")
-                    .replace(".20 ", ".2 ")
-                    .replace(".50 ", ".5 ");
+                let text = round(&percent(tick));
                 plot.text(text, [-8.0, y], &Words::new(NUMBER).colour(QUIET).to_the_left())?;
             }
         }
@@ -238,10 +235,8 @@ impl Chart<'_> {
         }
         let at = |across: f64| self.place([across, y * (x / across).sqrt()]);
         plot.dashes(at(x), at(end), FRAME)?;
-        // Where the line is about to end, below it.
-        let near = Portable::powf(end / x, 0.42) * x;
-        let [left, top] = at(near);
-        plot.text("slope −½", [left - 10.0, top + 16.0], &Words::new(NUMBER).colour(QUIET).to_the_left())
+        let [left, top] = at(x);
+        plot.text("slope −½", [left - 8.0, top], &Words::new(NUMBER).colour(QUIET).to_the_left())
     }
 
     fn curve<B: DrawingBackend>(&self, plot: &Sheet<'_, B>, curve: &Curve) -> Drawn {

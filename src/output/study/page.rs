@@ -1,7 +1,7 @@
 //! The page: what a person should know after a minute, in Markdown.
 
 use super::chart::Subject;
-use super::words::{capital, grouped, percent, time};
+use super::words::{capital, digits, grouped, percent, round, time};
 use crate::study::{Cost, Curve, PRICED_ERRORS, Slope, Study, Technique};
 use std::fmt::Write;
 
@@ -80,7 +80,7 @@ fn plot(files: &Files, subject: Subject, what: &str) -> Option<String> {
 
 /// The table of slopes and prices.
 fn prices(study: &Study) -> String {
-    let errors: Vec<String> = PRICED_ERRORS.iter().map(|&error| percent(error).replace(".0 ", " ")).collect();
+    let errors: Vec<String> = PRICED_ERRORS.iter().map(|&error| round(&percent(error))).collect();
     let mut text =
         format!("| technique | {} | slope |\n|---|{}---:|\n", errors.join(" | "), "---:|".repeat(errors.len()));
     for curve in study.curves.iter().filter(|curve| !matches!(curve.technique, Technique::Capped(_))) {
@@ -167,7 +167,7 @@ fn conditions(study: &Study, files: &Files) -> String {
     let conditions = &study.conditions;
     let density = conditions.density.map_or_else(
         || "in the layout of its artist".into(),
-        |density| format!("at {} per metre", super::words::digits(f64::from(density))),
+        |density| format!("at {} per metre", digits(f64::from(density))),
     );
     let threads = if conditions.threads == 1 { "1 thread".into() } else { format!("{} threads", conditions.threads) };
     let reference = &study.reference;

@@ -16,6 +16,16 @@ pub(super) fn time(seconds: f64) -> String {
     format!("{} {name}", digits(seconds / unit))
 }
 
+/// The same text without zeros that say nothing, for numbers that are round.
+pub(super) fn round(text: &str) -> String {
+    match text.split_once(' ') {
+        Some((number, unit)) if number.contains('.') => {
+            format!("{} {unit}", number.trim_end_matches('0').trim_end_matches('.'))
+        }
+        _ => text.to_owned(),
+    }
+}
+
 /// A number to two digits, or three from 100 up; grouped in thousands above.
 pub(super) fn digits(number: f64) -> String {
     if !number.is_finite() {
@@ -76,6 +86,7 @@ mod tests {
         assert_eq!((percent(0.0123).as_str(), percent(1.94).as_str()), ("1.2 %", "194 %"));
         let times = [0.034, 59.0, 119.0, 121.0, 7100.0, 7300.0, 200_000.0, 1e9].map(time);
         assert_eq!(times, ["0.034 s", "59 s", "119 s", "2.0 min", "118 min", "2.0 h", "2.3 days", "32 years"]);
+        assert_eq!(["0.50 %", "1.0 s", "100 s", "0.001 s"].map(round), ["0.5 %", "1 s", "100 s", "0.001 s"]);
         assert_eq!(capital("naive"), "Naive");
     }
 }
