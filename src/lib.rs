@@ -14,6 +14,7 @@
 //! | `scene` | what exists: meshes, materials, lights, sky; every fault in them by name |
 //! | `trace` | how light moves: rays, scattering, light sampling, paths |
 //! | `bake` | what is measured: lightmaps, light meters, pictures; progress, plan and report |
+//! | `study` | what accuracy costs in time: techniques, their error against a reference, their slope |
 //! | `output` | encoders, and writing a whole folder safely |
 //! | `plugin` | Bevy: components, extraction, the bake beside the running game, display |
 //!
@@ -25,6 +26,7 @@
 //! |---|---|
 //! | `bevy` (default) | components and the loader of a baked folder: all that a shipped game needs |
 //! | `bake` (default) | the tracer, the baker and the encoders; without `bevy`, a library free of the engine |
+//! | `study` | the page of a study as files, with its plots |
 //! | `cli` | the `kiln` command: the plugin in an app without a window or a GPU |
 //! | `window` | a window and Bevy's renderer, for the examples and the tests that draw |
 //!
@@ -46,6 +48,8 @@ pub mod output;
 pub mod plugin;
 #[cfg(feature = "bake")]
 pub mod scene;
+#[cfg(feature = "bake")]
+pub mod study;
 #[cfg(feature = "bake")]
 pub mod trace;
 

@@ -11,6 +11,8 @@ mod punctual;
 mod room;
 #[path = "cli/skies.rs"]
 mod skies;
+#[path = "cli/study.rs"]
+mod study;
 
 use glb::Glb;
 use serde_json::Value;
@@ -268,7 +270,8 @@ fn wrong_arguments_and_what_is_not_there_yet() {
         (&["render", scene, "-o", "a.png", "--error", "1%"], "`--error` is not there yet"),
         (&["render", scene, "-o", "a.gif"], "a.gif is no picture"),
         (&["merge", "a", "--b"], "`kiln merge` is not there yet"),
-        (&["study", scene, "-o", "x"], "`kiln study` is not there yet"),
+        (&["study", scene], "--output"),
+        (&["study", scene, "-o", "x", "--time", "5"], "give a time with its unit"),
     ] {
         assert_fails(&run(arguments), 2, sentence);
     }

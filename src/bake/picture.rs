@@ -101,7 +101,7 @@ pub fn render_picture(
 }
 
 /// The unit direction in the world through a place on the picture; its centre is the camera's −Z.
-fn ray_direction(camera: &Camera, place: Vec2, [width, height]: [u32; 2]) -> Vec3 {
+pub(super) fn ray_direction(camera: &Camera, place: Vec2, [width, height]: [u32; 2]) -> Vec3 {
     let half_height = Portable::tan(0.5 * camera.vertical_fov);
     let size = Vec2::new(width as f32, height as f32);
     let centred = (place * 2.0 - size) / size.y * half_height;

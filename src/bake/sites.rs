@@ -9,7 +9,7 @@ use super::validity::{Footing, footings};
 use super::workers::Workers;
 use super::{BakeError, BakeSettings, BakeWarning, CancelToken, Layout};
 use crate::scene::{Scene, Subject};
-use crate::trace::{Dimensions, Sampler, Sobol, Tally, Tracer, Transport};
+use crate::trace::{Dimensions, Sampler, Tally, Tracer, Transport};
 use glam::{Vec2, Vec3};
 use std::collections::BTreeMap;
 
@@ -42,18 +42,18 @@ impl Site {
     pub(super) fn sample(
         &self,
         tracer: &Tracer,
-        sobol: &Sobol,
+        numbers: &impl Sampler,
         start: Start,
         transport: &Transport,
         tally: &mut Tally,
     ) -> Option<Vec3> {
         match start {
-            Start::Anywhere => Some(tracer.diffuse_radiance(&self.footing.anchor, sobol, transport, tally)),
+            Start::Anywhere => Some(tracer.diffuse_radiance(&self.footing.anchor, numbers, transport, tally)),
             Start::Drawn => {
-                let [u, v, ..] = sobol.draw(Dimensions::Start);
+                let [u, v, ..] = numbers.draw(Dimensions::Start);
                 let drawn = self.covered.texel.start(tracer, Vec2::new(u, v));
                 let is_reached = self.footing.reaches(tracer, &drawn);
-                is_reached.then(|| tracer.diffuse_radiance(&drawn, sobol, transport, tally))
+                is_reached.then(|| tracer.diffuse_radiance(&drawn, numbers, transport, tally))
             }
         }
     }

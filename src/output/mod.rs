@@ -18,6 +18,8 @@ mod png;
 mod reference;
 mod rgb9e5;
 mod safe_write;
+#[cfg(feature = "study")]
+mod study;
 #[cfg(test)]
 mod test_pages;
 mod texels;
@@ -30,5 +32,7 @@ pub use ktx2::ktx2_bytes;
 pub use lightmap::{WrittenLightmap, write_lightmap};
 pub use picture::write_picture;
 pub use reference::{ReferenceError, ReferenceFault, compare_with_reference};
+#[cfg(feature = "study")]
+pub use study::{study_answer, write_study};
 pub use texels::{Encoded, texel_bytes};
 pub use tone::{Look, ToneCurve};

@@ -50,7 +50,7 @@ fn preview_exposure(page: &Page) -> f64 {
 }
 
 /// A pixel of a radiance.
-fn pixel(radiance: Vec3, exposure: f64, tone: ToneCurve) -> [u8; 3] {
+pub(super) fn pixel(radiance: Vec3, exposure: f64, tone: ToneCurve) -> [u8; 3] {
     let exposed = radiance.to_array().map(|channel| (f64::from(clamp(channel, f32::MAX)) * exposure) as f32);
     tone.apply(Vec3::from_array(exposed)).to_array().map(to_srgb)
 }

@@ -33,7 +33,7 @@ pub(crate) use census::{Census, effect_of};
 pub(crate) use compile::Compiled;
 pub use effects::{Effect, EffectSet, ForcedEffects};
 pub(crate) use path::{MAX_VERTICES, PathStart, Tally};
-pub(crate) use sampler::{Dimensions, Sampler, Sobol};
+pub(crate) use sampler::{Dimensions, Independent, Sampler, Sobol};
 pub(crate) use tracer::Receiver;
 pub use tracer::{RayHit, Tracer};
 pub use transport::{Estimator, Transport};

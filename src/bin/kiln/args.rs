@@ -32,9 +32,8 @@ pub(crate) enum Verb {
     /// Join the shards of a bake
     #[command(hide = true)]
     Merge(AnythingArgs),
-    /// Say what accuracy costs in time
-    #[command(hide = true)]
-    Study(AnythingArgs),
+    /// Say what accuracy costs in time: table, plots, pictures
+    Study(StudyArgs),
 }
 
 #[derive(Debug, Args)]
@@ -263,4 +262,18 @@ pub(crate) struct RenderArgs {
     pub(crate) error: Option<String>,
     #[arg(long, hide = true)]
     pub(crate) time: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct StudyArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// The folder that gets study.md, its plots and its pictures
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) layout: LayoutArgs,
+    /// How long it may take, such as 90s, 5m or 1h
+    #[arg(long, value_name = "T", default_value = "20m", value_parser = parse::time, allow_hyphen_values = true)]
+    pub(crate) time: Duration,
 }

@@ -10,7 +10,7 @@ pub(crate) fn refuse(verb: &Verb) -> Result<(), Failure> {
             (args.resume, "--resume", "bake from the start"),
             (args.shard.is_some(), "--shard", "bake the whole scene"),
         ],
-        Verb::Plan(_) => Vec::new(),
+        Verb::Plan(_) | Verb::Study(_) => Vec::new(),
         Verb::Irradiance(args) => vec![
             (args.error.is_some(), "--error", "ask for paths with --spp N"),
             (args.time.is_some(), "--time", "ask for paths with --spp N"),
@@ -20,7 +20,6 @@ pub(crate) fn refuse(verb: &Verb) -> Result<(), Failure> {
             (args.time.is_some(), "--time", "ask for paths with --spp N"),
         ],
         Verb::Merge(_) => vec![(true, "kiln merge", "bake the whole scene with kiln bake")],
-        Verb::Study(_) => vec![(true, "kiln study", "bake with kiln bake and read its report")],
     };
     match asked.into_iter().find(|(is_asked, ..)| *is_asked) {
         None => Ok(()),

@@ -12,6 +12,7 @@ mod points;
 mod progress;
 mod render;
 mod scene;
+mod study;
 mod talk;
 
 use args::{Cli, Verb};
@@ -28,7 +29,8 @@ fn main() -> ExitCode {
         Verb::Plan(args) => plan::run(args, &cancel),
         Verb::Irradiance(args) => irradiance::run(args, &cancel),
         Verb::Render(args) => render::run(args, &cancel),
-        Verb::Merge(_) | Verb::Study(_) => Ok(()),
+        Verb::Study(args) => study::run(args, &cancel),
+        Verb::Merge(_) => Ok(()),
     });
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,10 +1,8 @@
 //! Where the numbers in [0, 1) come from: pure functions of (key; replicate; sample; dimension), without state.
 
-#[cfg(test)]
 mod independent;
 mod sobol;
 
-#[cfg(test)]
 pub(crate) use independent::Independent;
 pub(crate) use sobol::Sobol;
 

@@ -1,0 +1,258 @@
+//! A few texels that stand for all of a lightmap, measured as the bake measures them, in any manner: for studies of what
+//! accuracy costs. Owns which texels these are and sums that can be carried on; says nothing about errors.
+
+use super::atlas::Atlas;
+use super::endless::refuse_endless_texels;
+use super::gather::{REPLICATES, Start};
+use super::lightmap::refuse_what_cannot_be_baked;
+use super::sites::{Site, Sites};
+use super::unwrap::LaidOut;
+use super::workers::Workers;
+use super::{BakeError, BakeSettings, BakeWarning, CancelToken};
+use crate::math::{combine, luminance, mix64};
+use crate::scene::Scene;
+use crate::trace::{Census, Compiled, Effect, EffectSet, Independent, Sobol, Tally, Tracer, Transport};
+use glam::Vec3;
+use std::num::NonZeroUsize;
+use std::time::Duration;
+
+/// How many starts may be refused for each one that is wanted, as in the bake.
+const PATIENCE: u64 = 8;
+
+/// Paths between two looks at the cancel switch.
+const CANCEL_INTERVAL: u64 = 64;
+
+/// Whose numbers say which texels are taken.
+const CHOICE: u64 = 0x7265_6365_6976;
+
+/// Where random numbers come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Numbers {
+    /// Owen-scrambled Sobol points: the bake's own.
+    Sobol,
+    /// Each by itself: plain Monte Carlo.
+    Independent,
+}
+
+/// How texels are measured.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Manner {
+    pub(crate) transport: Transport,
+    pub(crate) numbers: Numbers,
+}
+
+/// Sums over one texel's paths so far, as luminance: run by run, as in the bake.
+#[derive(Clone, Debug)]
+pub(crate) struct Sums {
+    key: u64,
+    /// Sum, and place in the sequence.
+    runs: [(f64, u64); REPLICATES as usize],
+    /// Paths of each run.
+    accepted: u64,
+}
+
+impl Sums {
+    fn means(&self) -> impl Iterator<Item = f64> {
+        self.runs.iter().map(|(sum, _)| sum / self.accepted.max(1) as f64)
+    }
+
+    /// Mean luminance of E/π [cd/m²].
+    pub(crate) fn mean(&self) -> f64 {
+        self.means().sum::<f64>() / f64::from(REPLICATES)
+    }
+
+    /// Variance of that mean, from how the runs differ [cd²/m⁴].
+    pub(crate) fn variance(&self) -> f64 {
+        let (mean, count) = (self.mean(), f64::from(REPLICATES));
+        self.means().map(|run| (run - mean) * (run - mean)).sum::<f64>() / (count * (count - 1.0))
+    }
+
+    fn extend(
+        &mut self,
+        count: u32,
+        cancel: &CancelToken,
+        mut path: impl FnMut(u64, u64, Start) -> Option<Vec3>,
+    ) -> Option<()> {
+        let per_run = u64::from(count.div_ceil(REPLICATES));
+        for (number, (sum, index)) in self.runs.iter_mut().enumerate() {
+            let key = combine(self.key, number as u64);
+            let mut accepted = self.accepted;
+            while accepted < per_run {
+                if *index % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {
+                    return None;
+                }
+                let start = if *index < PATIENCE * per_run { Start::Drawn } else { Start::Anywhere };
+                let value = path(key, *index, start);
+                *index += 1;
+                let Some(value) = value else { continue };
+                accepted += 1;
+                // What is no light counts as dark, as in the bake.
+                if value.is_finite() && value.min_element() >= 0.0 {
+                    *sum += luminance(value);
+                }
+            }
+        }
+        self.accepted = self.accepted.max(per_run);
+        Some(())
+    }
+}
+
+/// A few texels of a lightmap.
+pub(crate) struct Receivers<'a> {
+    /// With the UV1 that it was given.
+    scene: Scene,
+    tracer: Tracer,
+    transport: Transport,
+    census: Census,
+    /// Evenly spread over all, in their order.
+    sites: Vec<Site>,
+    /// How many there are in all.
+    texels: u64,
+    warnings: Vec<BakeWarning>,
+    workers: Workers<'a>,
+}
+
+impl<'a> Receivers<'a> {
+    /// Lays out the lightmap of a scene and takes up to `count` of its texels.
+    ///
+    /// # Errors
+    ///
+    /// What a bake would refuse.
+    pub(crate) fn new(
+        scene: &Scene,
+        settings: &BakeSettings,
+        count: usize,
+        cancel: &'a CancelToken,
+    ) -> Result<Self, BakeError> {
+        settings.validate()?;
+        let workers = Workers::new(settings.threads, &(), cancel)?;
+        let laid_out = LaidOut::new(scene, settings, &workers)?;
+        let Compiled { tracer, faults, census } = Compiled::new(&laid_out.scene, &settings.transport);
+        let faults = laid_out.without_solved(faults);
+        refuse_what_cannot_be_baked(&tracer, &faults)?;
+        let atlas = Atlas::new(&laid_out, &tracer, settings, cancel)?;
+        let Sites { seen, warnings: of_uv1, .. } = Sites::new(&laid_out.scene, &tracer, &atlas, settings, &workers)?;
+        refuse_endless_texels(&laid_out.scene, &tracer, &settings.transport, &seen)?;
+        let mut warnings: Vec<BakeWarning> = faults.into_iter().map(BakeWarning::from).collect();
+        warnings.extend(laid_out.warnings.iter().chain(&atlas.warnings).cloned());
+        warnings.extend(of_uv1);
+        warnings.extend(BakeWarning::of_transport(&settings.transport, &census));
+        drop(atlas);
+        let texels = seen.len() as u64;
+        let scene = laid_out.scene.into_owned();
+        let sites = spread(seen, count);
+        Ok(Self { scene, tracer, transport: settings.transport, census, sites, texels, warnings, workers })
+    }
+
+    /// How many texels are measured.
+    pub(crate) fn count(&self) -> usize {
+        self.sites.len()
+    }
+
+    /// How many texels the lightmap has.
+    pub(crate) fn texels(&self) -> u64 {
+        self.texels
+    }
+
+    /// Page of each measured texel, and its place on it, row by row.
+    pub(crate) fn places(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.sites.iter().map(|site| [site.covered.page, site.covered.index])
+    }
+
+    pub(crate) fn tracer(&self) -> &Tracer {
+        &self.tracer
+    }
+
+    pub(crate) fn effects(&self) -> EffectSet {
+        self.tracer.effects()
+    }
+
+    pub(crate) fn census(&self) -> &Census {
+        &self.census
+    }
+
+    pub(crate) fn warnings(&self) -> &[BakeWarning] {
+        &self.warnings
+    }
+
+    /// The same scene without an effect; `None` if light would then be kept for ever or nothing would shine.
+    pub(crate) fn without(&self, effect: Effect) -> Option<Tracer> {
+        let mut transport = self.transport;
+        transport.effects.off = transport.effects.off.with(effect);
+        let tracer = Compiled::sharing_tree(&self.scene, &transport, &self.tracer).tracer;
+        refuse_endless_texels(&self.scene, &tracer, &self.transport, &self.sites).is_ok().then_some(tracer)
+    }
+
+    /// Sums without any path. Those of salt 0 take the bake's own random numbers, and other salts take others.
+    pub(crate) fn sums(&self, salt: u64) -> Vec<Sums> {
+        let key = |key| if salt == 0 { key } else { combine(key, salt) };
+        let empty = |site: &Site| Sums { key: key(site.covered.key), runs: Default::default(), accepted: 0 };
+        self.sites.iter().map(empty).collect()
+    }
+
+    /// Carries sums on until each has so many paths, through `tracer`, which is this one's or one without an effect.
+    /// Tells the processor time that it took.
+    pub(crate) fn carry_on(
+        &self,
+        tracer: &Tracer,
+        manner: &Manner,
+        sums: &mut Vec<Sums>,
+        count: u32,
+    ) -> Result<Duration, BakeError> {
+        let items: Vec<(&Site, &Sums)> = self.sites.iter().zip(sums.iter()).collect();
+        let work = self.workers.gather(
+            &items,
+            |&(site, sums), cancel| {
+                let (mut sums, mut tally) = (sums.clone(), Tally::default());
+                let transport = &manner.transport;
+                match manner.numbers {
+                    Numbers::Sobol => sums.extend(count, cancel, |key, index, start| {
+                        site.sample(tracer, &Sobol::new(key, index), start, transport, &mut tally)
+                    })?,
+                    Numbers::Independent => sums.extend(count, cancel, |key, index, start| {
+                        site.sample(tracer, &Independent::new(key, index), start, transport, &mut tally)
+                    })?,
+                }
+                Some(sums)
+            },
+            |_| None,
+        )?;
+        *sums = work.results;
+        Ok(work.cpu)
+    }
+}
+
+/// Up to `count` items, one at a place of chance in each of as many equal parts of the list.
+fn spread<T>(items: Vec<T>, count: usize) -> Vec<T> {
+    let (all, count) = (items.len() as u128, count as u128);
+    if all <= count {
+        return items;
+    }
+    let place = |part: u128| {
+        let [from, to] = [part, part + 1].map(|part| part * all / count);
+        from + ((to - from) * u128::from(mix64(CHOICE ^ part as u64)) >> 64)
+    };
+    let mut places = (0..count).map(place).peekable();
+    let is_taken = |(index, item)| places.next_if_eq(&(index as u128)).map(|_| item);
+    items.into_iter().enumerate().filter_map(is_taken).collect()
+}
+
+/// Threads that a number of them stands for.
+pub(crate) fn thread_count(threads: Option<NonZeroUsize>) -> usize {
+    threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_few_are_spread_over_all() {
+        let few = spread((0..1000).collect(), 100);
+        assert_eq!(few.len(), 100);
+        assert!(few.iter().enumerate().all(|(part, item)| item / 10 == part), "{few:?}");
+        assert!(few.iter().any(|item| item % 10 != few[0] % 10), "places of chance");
+        assert_eq!(spread(vec![1, 2, 3], 5), [1, 2, 3]);
+        assert_eq!(spread((0..1001).collect::<Vec<i32>>(), 1000).len(), 1000);
+    }
+}
