@@ -2,7 +2,7 @@
 //! nothing of studies.
 //!
 //! Plotters has backends for both and no more of it is used: letters by `ab_glyph`, which needs no library of the
-//! system, from fonts that lie beside this file. Its pictures have hard edges, so they are drawn larger and averaged.
+//! system, from fonts that come along in `assets/fonts`. Its pictures have hard edges, so they are drawn larger and averaged.
 
 use plotters::coord::Shift;
 use plotters::prelude::{
@@ -27,8 +27,8 @@ const LARGER: usize = 3;
 const LETTERS: f64 = 1.24;
 
 const FONT: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
-const REGULAR: &[u8] = include_bytes!("font/DejaVuSans-subset.ttf");
-const BOLD: &[u8] = include_bytes!("font/DejaVuSans-Bold-subset.ttf");
+const REGULAR: &[u8] = include_bytes!("../../../assets/fonts/DejaVuSans-subset.ttf");
+const BOLD: &[u8] = include_bytes!("../../../assets/fonts/DejaVuSans-Bold-subset.ttf");
 
 const INK: RGBColor = RGBColor(34, 34, 34);
 pub(super) const QUIET: RGBColor = RGBColor(95, 95, 95);
