@@ -15,7 +15,7 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 fn settings(effort: Effort) -> StudySettings {
-    StudySettings { bake: BakeSettings { density: 4.0, ..BakeSettings::default() }, effort }
+    StudySettings { bake: BakeSettings { density: 1.5, ..BakeSettings::default() }, effort }
 }
 
 fn run(scene: &Scene, paths: u32) -> Study {
@@ -126,7 +126,7 @@ fn the_same_values_twice_whatever_the_threads() {
     let scene = glb::load("cornell");
     let of = |threads: usize| {
         let mut settings = settings(Effort::Paths(32));
-        settings.bake.density = 2.0;
+        settings.bake.density = 0.7;
         settings.bake.threads = Some(threads.try_into().unwrap());
         numbers(&study(&scene, &settings, &|_| (), &CancelToken::default()).unwrap())
     };

@@ -230,7 +230,7 @@ fn spread<T>(items: Vec<T>, count: usize) -> Vec<T> {
     }
     let place = |part: u128| {
         let [from, to] = [part, part + 1].map(|part| part * all / count);
-        from + ((to - from) * u128::from(mix64(CHOICE ^ part as u64)) >> 64)
+        from + (((to - from) * u128::from(mix64(CHOICE ^ part as u64))) >> 64)
     };
     let mut places = (0..count).map(place).peekable();
     let is_taken = |(index, item)| places.next_if_eq(&(index as u128)).map(|_| item);
