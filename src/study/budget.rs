@@ -82,6 +82,12 @@ impl Part<'_> {
         self.limit.is_none_or(|limit| self.began.elapsed().as_secs_f64() + seconds <= limit.as_secs_f64())
     }
 
+    /// Whether to finish what was begun in good faith: not where it takes far longer than was foreseen, as on a machine
+    /// that is busy with other things.
+    pub(super) fn goes_on(&self) -> bool {
+        self.limit.is_none_or(|limit| self.began.elapsed() <= limit + limit / 4)
+    }
+
     /// Time that is left; `None` where only paths are limited [s].
     pub(super) fn left(&self) -> Option<f64> {
         self.limit.map(|limit| (limit.as_secs_f64() - self.began.elapsed().as_secs_f64()).max(0.0))
@@ -121,6 +127,9 @@ impl Part<'_> {
             let per_path = so_far / f64::from(count);
             let step = ((REPORT / per_path.max(1e-9)) as u32 / REPLICATES * REPLICATES).max(REPLICATES);
             while count < next {
+                if !self.goes_on() {
+                    return Ok(());
+                }
                 count = (count + step).min(next);
                 trace(count)?;
                 self.report(f64::from(count) / f64::from(self.most()));

@@ -183,9 +183,9 @@ pub fn study(
     trails.push(bakes::bakes(scene, &receivers, &settings, &mut budget, cancel)?);
     let (effects, sentences) = effects::shares(&receivers, &settings, &mut budget)?;
     left_out.extend(sentences);
+    let (truth, reference) = tracing::reference(&receivers, &settings, &mut budget)?;
     let (strip, sentences) = strip::strip(scene, receivers.tracer(), &settings, &mut budget, cancel)?;
     left_out.extend(sentences);
-    let (truth, reference) = tracing::reference(&receivers, &settings, &mut budget)?;
     if cancel.is_cancelled() {
         return Err(BakeError::Cancelled);
     }

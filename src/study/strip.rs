@@ -60,10 +60,13 @@ pub(super) fn strip(
         if count > part.most() || !is_affordable {
             break;
         }
-        while taken < count {
+        while taken < count && part.goes_on() {
             taken = count.min(taken + ((STEP * f64::from(taken)) as u32).max(COUNTS[0]));
             film.carry_on(taken)?;
             part.report(f64::from(taken) / f64::from(COUNTS[COUNTS.len() - 1].min(part.most())));
+        }
+        if taken < count {
+            break;
         }
         pictures.push(StudyPicture { samples: count, radiance: film.radiance() });
     }
