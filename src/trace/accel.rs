@@ -1,18 +1,17 @@
 //! Finding what a ray meets: the only file that names `obvhs`.
 //!
-//! The tree is obvhs's; the triangle test is ours and watertight ([`super::triangle`]). Boxes are padded, because
-//! the tree's slab test rounds and its inverse directions are clamped: without the padding a ray can miss a box
-//! whose triangle it hits. All triangles lie in one frame: a static bake needs no instance transforms, and a second
-//! rounding on the way down would break watertightness between neighbours.
+//! obvhs builds a binary tree (PLOC with reinsertion); `accel/wide.rs` makes nodes of eight boxes and packets of eight
+//! triangles of it, `accel/walk.rs` takes rays through them, with eight numbers at once (`accel/lanes.rs`). The triangle
+//! test is watertight ([`super::triangle`]). Boxes are padded, because the slab test rounds: without the padding a ray
+//! can miss a box whose triangle it hits. All triangles lie in one frame: a static bake needs no instance transforms,
+//! and a second rounding on the way down would break watertightness between neighbours.
 //!
-//! The tree drops every box that a ray leaves within 10⁻⁴ of its origin, a length that knows nothing of the scene: in
-//! metres, light would leave a closed room through its corners. All lengths in here are therefore scaled by a power
-//! of two, which rounds nothing, that makes the scene 2³⁰ units large. A ray leaves the box of a triangle that it meets
-//! no sooner than the padding lets it, 2⁻²⁰ of that or 10³ units: the dropped length is none.
+//! The triangle test multiplies three coordinates. That these products neither overflow nor vanish, whatever size the
+//! scene has, all lengths in here are scaled by a power of two, which rounds nothing, that makes it 2³⁰ units large.
 //!
 //! # Rays from afar
 //!
-//! The triangle test multiplies three coordinates, and what it and the slab test round grows with the distance of the
+//! What the triangle test and the slab test round grows with the distance of the
 //! ray's origin. So only rays that start within [`NEAR`] of the scene's reach r (its largest coordinate) go to the tree
 //! as they are: no coordinate difference is then above 2.5 r < 2^32.4 units and no product of three above 2⁹⁸. Any other
 //! ray is first moved along its own line to a cube of 1.25 r, in f64 (`accel/far.rs`), where it may be off by 2⁻⁵² of
@@ -24,53 +23,50 @@
 //! A box may be missed only by rays that miss its triangle as [`super::triangle`] computes it. With an origin within
 //! 1.5 r, each in u·r, u = 2⁻²⁴:
 //!
-//! - a slab's plane q·e + p (e a power of two, q ≤ 255) comes out as (q·e + (p − o))/d with five roundings, which move
-//!   it by u·(q·e + 2·|p − o| + 2·|q·e + p − o|) ≤ 2 + 4·2.5 = 12;
-//! - direction components below ε = 2⁻²³ are taken for ε: over the longest way, 2.5·√3 r, at most ε·4.4 r = 8.7;
+//! - a slab's plane p comes out as (p − o)·(1/d) with three roundings, which move it by 3·|p − o| ≤ 3·2.5 = 7.5;
+//! - where d is so small that 1/d overflows, the plane counts as never met; over the longest way, 2.5·√3 r, the ray
+//!   moves by less than 2⁻¹²⁵ r along it: nothing. Where d is 0, nothing is rounded;
+//! - the padded plane was itself rounded: 1;
 //! - the triangle test moves a vertex as it sees it by u·(|v − o| + 5·|v − o| + …) ≤ 7·2.5 = 17.5.
 //!
-//! The sum is below 40, or 20 ε·r, by which each box is made larger on every side.
+//! The sum is 26, below 32 or 16 ε·r, by which each box is made larger on every side.
 //!
-//! # Why the eight-way tree
+//! # Why a walk of our own
 //!
-//! Million rays per second of processor time, one thread (`cargo bench`, Cornell box of 46 triangles and hall of
-//! 250 000), with the same triangle test in both, obvhs 0.3.3:
-//!
-//! | | CWBVH, medium build | BVH2, medium build | BVH2, slow build |
-//! |---|---|---|---|
-//! | Cornell box, closest, camera | 9.1 | 8.2 | 8.6 |
-//! | Cornell box, closest, diffuse | 6.0 | 4.9 | 5.5 |
-//! | Cornell box, any, camera | 10.5 | 9.0 | 10.7 |
-//! | Cornell box, any, diffuse | 8.1 | 6.6 | 7.9 |
-//! | hall, closest, camera | 2.0 | 2.0 | 2.0 |
-//! | hall, closest, diffuse | 1.15 | 0.84 | 0.86 |
-//!
-//! Any hit on the hall was not measured for BVH2. Rays of a bake are diffuse, and there the eight-way tree is a third faster on a large scene. BVH2 drops no length, so
-//! that it would need no scaling; its slab test rounds alike and needs the same padding.
+//! Million rays per second of processor time, one thread (`cargo bench --bench rays`, Cornell box of 46 triangles and
+//! hall of 250 000), the same triangle test in all, obvhs 0.3.3:
+//! see below.
 
 mod far;
+mod lanes;
+mod level;
+mod packet;
+mod walk;
+mod wide;
 
-use super::triangle::{Crossing, ShearedRay, plane_distance};
+use super::triangle::{ShearedRay, plane_distance};
 use glam::Vec3;
+use lanes::Lanes;
+use level::{InLanes, Level};
 use obvhs::Boundable;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
-use obvhs::cwbvh::CwBvh;
-use obvhs::cwbvh::builder::build_cwbvh;
-use obvhs::ray::{Ray, RayHit};
+use obvhs::bvh2::builder::build_bvh2;
 use std::time::Duration;
+use walk::{Met, Walk};
+use wide::{Binary, Bounds, Source, Tree};
 
 /// Coordinate up to which a ray's origin is used as it is, in reaches of the scene.
 const NEAR: f32 = 1.5;
 
 /// How much larger boxes are on every side, in ε times the scene's reach.
-const PADDING: f32 = 20.0;
+const PADDING: f32 = 16.0;
 
 /// A tree over triangles, all in one frame.
 pub(super) struct Accel {
-    tree: Option<CwBvh>,
-    /// In the tree's order and units: each triangle and the number under which the caller knows it.
-    triangles: Vec<([Vec3; 3], u32)>,
+    tree: Tree,
+    /// How this processor computes with eight numbers at once.
+    level: Level,
     /// The tree's units per metre: a power of two.
     scale: f32,
     /// Largest coordinate of the scene, in the tree's units.
@@ -88,11 +84,40 @@ pub(super) struct Hit {
     pub(super) barycentric: [f32; 2],
 }
 
-struct Padded(Aabb);
+/// [`Walk::nearest`].
+struct Nearest<'a> {
+    walk: Walk<'a>,
+    end: f32,
+}
 
-impl Boundable for Padded {
+impl InLanes for Nearest<'_> {
+    type Output = Option<Met>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> Option<Met> {
+        self.walk.nearest(lanes, self.end)
+    }
+}
+
+/// [`Walk::any`].
+struct Any<'a, F: FnMut(Met) -> bool> {
+    walk: Walk<'a>,
+    end: Option<(End, f32)>,
+    stops: F,
+}
+
+impl<F: FnMut(Met) -> bool> InLanes for Any<'_, F> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> bool {
+        self.walk.any(lanes, self.end, self.stops)
+    }
+}
+
+impl Boundable for Bounds {
     fn aabb(&self) -> Aabb {
-        self.0
+        Aabb::new(self.low.to_array().into(), self.high.to_array().into())
     }
 }
 
@@ -102,23 +127,13 @@ impl Accel {
         let reach = triangles.iter().flatten().fold(0.0_f32, |reach, vertex| reach.max(vertex.abs().max_element()));
         let scale = scale_for(reach);
         let reach = reach * scale;
-        let padding = PADDING * f32::EPSILON * reach;
         let triangles: Vec<[Vec3; 3]> = triangles.iter().map(|corners| corners.map(|vertex| vertex * scale)).collect();
-        let boxes: Vec<Padded> = triangles
-            .iter()
-            .map(|[a, b, c]| {
-                let low = a.min(*b).min(*c) - Vec3::splat(padding);
-                let high = a.max(*b).max(*c) + Vec3::splat(padding);
-                Padded(Aabb::new(low.to_array().into(), high.to_array().into()))
-            })
-            .collect();
-        if boxes.is_empty() {
-            return Self { tree: None, triangles: Vec::new(), scale, reach };
-        }
-        let mut tree = build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
-        let triangles = tree.primitive_indices.iter().map(|&index| (triangles[index as usize], index)).collect();
-        tree.primitive_indices = Vec::new();
-        Self { tree: Some(tree), triangles, scale, reach }
+        Self { tree: tree_of(&triangles, reach), level: Level::of_this_processor(), scale, reach }
+    }
+
+    /// Memory that it holds [bytes].
+    pub(super) fn memory_bytes(&self) -> u64 {
+        self.tree.memory_bytes()
     }
 
     /// The nearest triangle that the ray meets before `t_max`, from either side. The direction is a unit vector.
@@ -131,30 +146,16 @@ impl Accel {
         self.closest_from_near(origin, direction, t_max)
     }
 
-    #[inline]
     fn closest_from_near(&self, origin: Vec3, direction: Vec3, t_max: f32) -> Option<Hit> {
-        let tree = self.tree.as_ref()?;
-        let (origin, t_max) = (origin * self.scale, t_max * self.scale);
-        let sheared = ShearedRay::new(origin, direction);
-        let start = End { position: origin, inwards: direction };
-        let ray = tree_ray(origin, direction, t_max);
-        let mut nearest = RayHit::none();
-        let mut winner: Option<Crossing> = None;
-        tree.ray_traverse(ray, &mut nearest, |ray, index| {
-            let triangle = &self.triangles[index].0;
-            match sheared.cross(triangle) {
-                Some(crossing) if crossing.t < ray.tmax && start.is_behind(crossing.t, crossing.t_error, triangle) => {
-                    winner = Some(crossing);
-                    crossing.t
-                }
-                _ => f32::INFINITY,
-            }
-        });
-        winner.map(|crossing| Hit {
-            triangle: self.triangles[nearest.primitive_id as usize].1,
-            t: crossing.t / self.scale,
-            barycentric: crossing.barycentric,
-        })
+        let (origin, end) = (origin * self.scale, t_max * self.scale);
+        let ray = ShearedRay::new(origin, direction);
+        let walk = Walk { tree: &self.tree, ray: &ray, start: End { position: origin, inwards: direction } };
+        self.level.run(Nearest { walk, end }).map(|met| self.hit(met))
+    }
+
+    #[inline]
+    fn hit(&self, met: Met) -> Hit {
+        Hit { triangle: met.triangle, t: met.t / self.scale, barycentric: met.barycentric }
     }
 
     /// Whether anything lies on the open segment from `origin` to `target`.
@@ -214,30 +215,32 @@ impl Accel {
         end: Option<(End, f32)>,
         mut stops: impl FnMut(Hit) -> bool,
     ) -> bool {
-        let Some(tree) = &self.tree else {
-            return false;
-        };
-        let sheared = ShearedRay::new(origin, direction);
-        let distance = end.map_or(f32::INFINITY, |(_, distance)| distance);
-        let ray = tree_ray(origin, direction, distance);
-        let start = End { position: origin, inwards: direction };
-        !tree.ray_traverse_miss(ray, |_, index| {
-            let (corners, triangle) = &self.triangles[index];
-            let Some(Crossing { t, t_error, barycentric }) = sheared.cross(corners) else {
-                return f32::INFINITY;
-            };
-            let is_before_end = end.is_none_or(|(end, distance)| {
-                end.is_behind(distance - t, t_error + 4.0 * f32::EPSILON * distance, corners)
-            });
-            let is_between = start.is_behind(t, t_error, corners) && is_before_end;
-            if is_between && stops(Hit { triangle: *triangle, t: t / self.scale, barycentric }) {
-                // The tree asks for a distance below the ray's end, which rounding could deny.
-                t.min(0.5 * distance)
-            } else {
-                f32::INFINITY
-            }
-        })
+        let ray = ShearedRay::new(origin, direction);
+        let walk = Walk { tree: &self.tree, ray: &ray, start: End { position: origin, inwards: direction } };
+        self.level.run(Any { walk, end, stops: |met| stops(self.hit(met)) })
     }
+}
+
+/// The tree of triangles, in its own units.
+fn tree_of(triangles: &[[Vec3; 3]], reach: f32) -> Tree {
+    let padding = PADDING * f32::EPSILON * reach;
+    let around = |[a, b, c]: &[Vec3; 3]| Bounds {
+        low: a.min(*b).min(*c) - Vec3::splat(padding),
+        high: a.max(*b).max(*c) + Vec3::splat(padding),
+    };
+    let boxes: Vec<Bounds> = triangles.iter().map(around).collect();
+    if boxes.is_empty() {
+        return Tree::default();
+    }
+    let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
+    let binary = build_bvh2(&boxes, params, &mut Duration::default());
+    let node = |number: u32| {
+        let node = &binary.nodes[number as usize];
+        let bounds = Bounds { low: node.aabb.min.to_array().into(), high: node.aabb.max.to_array().into() };
+        Binary { bounds, first: node.first_index, count: node.prim_count }
+    };
+    let order = &binary.primitive_indices;
+    Tree::new(Source { node, node_count: binary.nodes.len(), order, triangles, boxes: &boxes })
 }
 
 /// A ray's one end, and the unit direction from there along the ray.
@@ -251,7 +254,13 @@ impl End {
     /// Whether something that is computed to lie `t` from this end, give or take `error`, lies on the ray's side.
     #[inline]
     fn is_behind(&self, t: f32, error: f32, triangle: &[Vec3; 3]) -> bool {
-        t > error || (t >= -error && plane_distance(self.position, self.inwards, triangle) > 0.0)
+        t > error || (t >= -error && self.sees(triangle))
+    }
+
+    /// Whether a triangle's plane lies on the ray's side.
+    #[cold]
+    fn sees(&self, triangle: &[Vec3; 3]) -> bool {
+        plane_distance(self.position, self.inwards, triangle) > 0.0
     }
 }
 
@@ -260,15 +269,6 @@ fn scale_for(reach: f32) -> f32 {
     // The exponent's bits; limits keep the scale and its reciprocal normal numbers.
     let exponent = (reach.to_bits() >> 23) as i32 - 127;
     2.0_f32.powi((30 - exponent).clamp(-90, 120))
-}
-
-/// A ray as the tree wants it.
-#[inline]
-fn tree_ray(origin: Vec3, direction: Vec3, t_max: f32) -> Ray {
-    // The tree takes −0 for negative when it inverts and for positive when it picks near planes, and then misses
-    // everything; −0 + 0 is +0.
-    let direction = direction + Vec3::ZERO;
-    Ray::new(origin.to_array().into(), direction.to_array().into(), 0.0, t_max)
 }
 
 #[cfg(test)]

@@ -30,18 +30,18 @@ use glam::Vec3;
 const U: f32 = f32::EPSILON * 0.5;
 
 /// Error bound of n chained roundings: n·u / (1 − n·u) (Higham 2002, lemma 3.1).
-const fn gamma(n: f32) -> f32 {
+pub(super) const fn gamma(n: f32) -> f32 {
     n * U / (1.0 - n * U)
 }
 
 /// A ray prepared for many triangles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ShearedRay {
-    origin: [f32; 3],
+    pub(super) origin: [f32; 3],
     /// The axes' permutation; the last is the one along which the ray runs farthest.
-    axes: [usize; 3],
+    pub(super) axes: [usize; 3],
     /// Shear of x and y per z, and scale of z.
-    shear: [f32; 3],
+    pub(super) shear: [f32; 3],
 }
 
 /// A crossing of a ray's line and a triangle.

@@ -3,6 +3,7 @@
 use crate::guard::{Edit, Guard};
 
 const ACCEL: &str = "src/trace/accel.rs";
+const WALK: &str = "src/trace/accel/walk.rs";
 const TRIANGLE: &str = "src/trace/triangle.rs";
 
 pub static ERROR_PER_AXIS: Guard = Guard {
@@ -29,38 +30,43 @@ pub static SIDE_IN_F64: Guard = Guard {
            the side of the plane that the start is on, in f64",
     edits: &[Edit {
         file: ACCEL,
-        text: "t > error || (t >= -error && plane_distance(self.position, self.inwards, triangle) > 0.0)",
-        instead: "t > error || (t >= f32::INFINITY && plane_distance(self.position, self.inwards, triangle) > 0.0)",
+        text: "plane_distance(self.position, self.inwards, triangle) > 0.0",
+        instead: "plane_distance(self.position, self.inwards, triangle) > f64::INFINITY",
     }],
 };
 
 pub static BEHIND_THE_START: Guard = Guard {
     name: "nothing behind the start",
     does: "a crossing counts only if it lies before the ray's start for certain",
-    edits: &[Edit {
-        file: ACCEL,
-        text: "start.is_behind(crossing.t, crossing.t_error, triangle)",
-        instead: "(crossing.t > -crossing.t_error || start.is_behind(crossing.t, crossing.t_error, triangle))",
-    }],
+    edits: &[Edit { file: WALK, text: "(certain & 1 << lane != 0 ||", instead: "(possible & 1 << lane != 0 ||" }],
 };
 
 pub static BEFORE_THE_END: Guard = Guard {
     name: "nothing at the end",
     does: "what lies within rounding of a shadow ray's end, as the lamp itself does, blocks it only if it lies on the \
            ray's side of that end, by its plane in f64",
-    edits: &[Edit { file: ACCEL, text: "t_error + 4.0 * f32::EPSILON * distance", instead: "0.0 * t_error" }],
+    edits: &[Edit {
+        file: WALK,
+        text: "end.is_behind(distance - t, t_error + end_error(distance), triangle)",
+        instead: "end.is_behind(distance - t, 0.0 * t_error, triangle)",
+    }],
 };
 
 pub static ANSWER_BELOW_THE_END: Guard = Guard {
-    name: "an answer that the tree cannot refuse",
-    does: "the tree (obvhs) takes a hit only below the ray's end; what is known to block is told to lie at half the way",
-    edits: &[Edit { file: ACCEL, text: "t.min(0.5 * distance)", instead: "t" }],
+    name: "an answer that stands",
+    does: "what is known to lie before a shadow ray's end is not held against the ray's length once more, which rounding \
+           could deny",
+    edits: &[Edit {
+        file: WALK,
+        text: "crossing.t.is_finite()",
+        instead: "crossing.t < end.map_or(f32::INFINITY, |(_, distance)| distance)",
+    }],
 };
 
 pub static PADDING: Guard = Guard {
     name: "padded boxes",
-    does: "boxes are 20ε of the scene's reach larger on every side: what the slab test, its clamped inverse directions and \
-           the triangle test may round together",
+    does: "boxes are 16ε of the scene's reach larger on every side: what the slab test and the triangle test may round \
+           together",
     edits: &[Edit {
         file: ACCEL,
         text: "let padding = PADDING * f32::EPSILON * reach;",
@@ -69,9 +75,13 @@ pub static PADDING: Guard = Guard {
 };
 
 pub static NO_MINUS_ZERO: Guard = Guard {
-    name: "no −0 in a direction",
-    does: "the tree (obvhs) takes −0 for negative when it inverts and for positive when it picks near planes; −0 + 0 is +0",
-    edits: &[Edit { file: ACCEL, text: "let direction = direction + Vec3::ZERO;", instead: "" }],
+    name: "one sign for −0",
+    does: "which sides of boxes are near is told by the sign of the very inverse that they are multiplied with: −∞ for −0",
+    edits: &[Edit {
+        file: WALK,
+        text: "near: [x.is_sign_negative().into(), y.is_sign_negative().into(), z.is_sign_negative().into()],",
+        instead: "near: [(d.x < 0.0).into(), (d.y < 0.0).into(), (d.z < 0.0).into()],",
+    }],
 };
 
 pub static EXACT_EDGES: Guard = Guard {
@@ -85,7 +95,10 @@ pub static ERROR_OF_T: Guard = Guard {
     name: "a bound on each distance",
     does: "each crossing's distance has a bound on its own rounding (Pharr, Jakob and Humphreys 2023, § 6.8.4), below which \
            f64 decides",
-    edits: &[Edit { file: TRIANGLE, text: "let t_error = 3.0 *", instead: "let t_error = 0.0 *" }],
+    edits: &[
+        Edit { file: TRIANGLE, text: "let t_error = 3.0 *", instead: "let t_error = 0.0 *" },
+        Edit { file: "src/trace/accel/packet.rs", text: "times(lanes, 3.0, sum)", instead: "times(lanes, 0.0, sum)" },
+    ],
 };
 
 pub static TRACED_FRAME: Guard = Guard {

@@ -4,13 +4,20 @@ use crate::guard::{Edit, Guard};
 
 pub static TREE_UNITS: Guard = Guard {
     name: "tree units",
-    does: "the tree's own absolute length (obvhs drops boxes nearer than 1e-4) is made a trillionth of the scene: all \
-           lengths are scaled by a power of two, which rounds nothing",
-    edits: &[Edit {
-        file: "src/trace/accel.rs",
-        text: "2.0_f32.powi((30 - exponent).clamp(-90, 120))",
-        instead: "2.0_f32.powi(0 * exponent)",
-    }],
+    does: "the tree knows no length: lengths are scaled by a power of two, which rounds nothing, to a scene of 2^30, and a \
+           box is entered however near its end is; taken out, boxes that end within 1e-4 m are dropped (obvhs)",
+    edits: &[
+        Edit {
+            file: "src/trace/accel.rs",
+            text: "2.0_f32.powi((30 - exponent).clamp(-90, 120))",
+            instead: "2.0_f32.powi(0 * exponent)",
+        },
+        Edit {
+            file: "src/trace/accel/walk.rs",
+            text: "(lanes.signs(lanes.le(enter, leave)), enter)",
+            instead: "(lanes.signs(lanes.and(lanes.le(enter, leave), lanes.lt(lanes.splat(1e-4), leave))), enter)",
+        },
+    ],
 };
 
 pub static ORIGIN_MOVE: Guard = Guard {
@@ -61,6 +68,12 @@ pub static NO_LEAST_AREA: Guard = Guard {
             text: "if determinant == 0.0 {",
             instead: "if determinant.abs() < 1e-5 {",
         },
+        Edit {
+            file: "src/trace/accel/packet.rs",
+            text: "let t = lanes.mul(sum, inverse);",
+            // All bits are no number.
+            instead: "let t = lanes.or(lanes.mul(sum, inverse), lanes.lt(lanes.splat(1e5), lanes.abs(inverse)));",
+        },
     ],
 };
 
@@ -69,10 +82,20 @@ pub static WATERTIGHT: Guard = Guard {
     does: "a ray misses a triangle only if its three edge functions have both signs; neighbours compute that of their \
            common edge from the same products (Woop, Benthin and Wald 2013), so that none passes between; taken out, \
            what is within 1e-5 of an edge is a miss",
-    edits: &[Edit {
-        file: "src/trace/triangle.rs",
-        text: "if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {",
-        instead: "if u.abs().min(v.abs()).min(w.abs()) < 1e-5 * (u + v + w).abs() \
-                  || (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {",
-    }],
+    edits: &[
+        Edit {
+            file: "src/trace/triangle.rs",
+            text: "if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {",
+            instead: "if u.abs().min(v.abs()).min(w.abs()) < 1e-5 * (u + v + w).abs() \
+                      || (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {",
+        },
+        Edit {
+            file: "src/trace/accel/packet.rs",
+            text: "let crossed = !(mixed | zeros) & ((1 << LANES) - 1);",
+            instead: "let least = lanes.min(lanes.min(lanes.abs(u), lanes.abs(v)), lanes.abs(w)); \
+                      let sum = lanes.abs(lanes.add(lanes.add(u, v), w)); \
+                      let thin = lanes.signs(lanes.lt(least, lanes.mul(lanes.splat(1e-5), sum))); \
+                      let crossed = !(mixed | zeros | thin) & ((1 << LANES) - 1);",
+        },
+    ],
 };

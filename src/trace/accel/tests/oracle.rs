@@ -1,8 +1,10 @@
 //! What the tree finds, against two other ways to find it: every triangle one by one with the same triangle test
 //! (equal to the bit: the tree loses nothing), and with a textbook one in f64 (equal but at edges: the test is right).
+//! Also every way to compute with eight numbers at once against the plain one, to the bit.
 
 use crate::math::testing::Random;
-use crate::trace::accel::{Accel, End};
+use crate::trace::accel::level::Level;
+use crate::trace::accel::{Accel, End, Hit};
 use crate::trace::testing::of_any_size;
 use crate::trace::triangle::ShearedRay;
 use glam::{DVec3, Vec3};
@@ -23,8 +25,13 @@ impl Segment {
     }
 }
 
-/// The distance of the nearest hit, by testing all; `None` for none.
-fn nearest_of_all(accel: &Accel, segment: &Segment) -> Option<f32> {
+/// The bits of a hit's distance, its triangle, the bits of its weights.
+fn bits(hit: Option<Hit>) -> Option<(u32, u32, [u32; 2])> {
+    hit.map(|hit| (hit.t.to_bits(), hit.triangle, hit.barycentric.map(f32::to_bits)))
+}
+
+/// The nearest hit, by testing all; of several at one distance that of the smallest number. `None` for none.
+fn nearest_of_all(accel: &Accel, segment: &Segment) -> Option<Hit> {
     let direction = segment.direction();
     let (from, passed) = match accel.is_far(segment.from) {
         true => accel.come_nearer(segment.from, direction)?,
@@ -33,11 +40,13 @@ fn nearest_of_all(accel: &Accel, segment: &Segment) -> Option<f32> {
     let origin = from * accel.scale;
     let ray = ShearedRay::new(origin, direction);
     let start = End { position: origin, inwards: direction };
-    let hits = accel.triangles.iter().filter_map(|(triangle, _)| {
-        let crossing = ray.cross(triangle)?;
-        start.is_behind(crossing.t, crossing.t_error, triangle).then_some(crossing.t)
+    let hits = accel.tree.triangles().filter_map(|(corners, triangle)| {
+        let crossing = ray.cross(&corners)?;
+        let hit = Hit { triangle, t: crossing.t, barycentric: crossing.barycentric };
+        start.is_behind(crossing.t, crossing.t_error, &corners).then_some(hit)
     });
-    hits.min_by(f32::total_cmp).map(|t| (passed + f64::from(t / accel.scale)) as f32)
+    let nearest = hits.min_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)))?;
+    Some(Hit { t: (passed + f64::from(nearest.t / accel.scale)) as f32, ..nearest })
 }
 
 /// How a line crosses a triangle in f64 (Möller and Trumbore 1997): distance, and the least of the three weights.
@@ -59,12 +68,15 @@ fn cross_in_f64(segment: &Segment, triangle: &[Vec3; 3]) -> Option<(f64, f64)> {
 /// Holds what the tree finds against both oracles; returns how many rays hit and how many are blocked.
 fn compare(triangles: &Triangles, segments: &[Segment]) -> [usize; 2] {
     let accel = Accel::new(triangles);
+    let baseline = Accel { level: Level::Baseline, ..Accel::new(triangles) };
     let mut counts = [0; 2];
     for segment in segments {
         let (direction, distance) = (segment.direction(), segment.to.as_dvec3().distance(segment.from.as_dvec3()));
         let hit = accel.closest(segment.from, direction, f32::INFINITY);
-        assert_eq!(hit.map(|hit| hit.t), nearest_of_all(&accel, segment), "{segment:?}");
+        assert_eq!(bits(hit), bits(nearest_of_all(&accel, segment)), "{segment:?}");
+        assert_eq!(bits(hit), bits(baseline.closest(segment.from, direction, f32::INFINITY)), "{segment:?}");
         let blocked = accel.is_blocked(segment.from, segment.to);
+        assert_eq!(blocked, baseline.is_blocked(segment.from, segment.to), "{segment:?}");
         if let Some(hit) = hit {
             // The tree's own number leads to the caller's triangle.
             let (t, margin) = cross_in_f64(segment, &triangles[hit.triangle as usize]).unwrap_or((hit.t.into(), 0.0));
@@ -190,7 +202,7 @@ fn slivers() {
         let from = 3.0 * random.direction();
         let segment = Segment { from, to: (triangle[0] + triangle[1] + triangle[2]) / 3.0 };
         let hit = accel.closest(segment.from, segment.direction(), f32::INFINITY);
-        assert_eq!(hit.map(|hit| hit.t), nearest_of_all(&accel, &segment), "{index}");
+        assert_eq!(bits(hit), bits(nearest_of_all(&accel, &segment)), "{index}");
         hits += usize::from(hit.is_some());
     }
     assert!(hits > 100, "{hits}");
