@@ -8,7 +8,7 @@ use plotters::prelude::{DrawingBackend, RGBColor};
 
 /// Size of a plot, and its margins: left, top, right, bottom [pixels].
 const SIZE: [f64; 2] = [960.0, 560.0];
-const MARGINS: [f64; 4] = [82.0, 78.0, 240.0, 64.0];
+const MARGINS: [f64; 4] = [82.0, 78.0, 270.0, 64.0];
 
 /// Sizes of letters [pixels].
 const TITLE: f64 = 19.0;
