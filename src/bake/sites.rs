@@ -9,7 +9,7 @@ use super::validity::{Footing, footings};
 use super::workers::Workers;
 use super::{BakeError, BakeSettings, BakeWarning, CancelToken, Layout};
 use crate::scene::{Scene, Subject};
-use crate::trace::{Dimensions, Sampler, Tally, Tracer, Transport};
+use crate::trace::{Dimensions, PathStart, Sampler, Tally, Tracer, Transport};
 use glam::{Vec2, Vec3};
 use std::collections::BTreeMap;
 
@@ -37,8 +37,7 @@ pub(super) struct Site {
 }
 
 impl Site {
-    /// One sample of E/π [cd/m²], from a place on the texel that can be reached from its anchor; `None` where the
-    /// numbers say another.
+    /// One sample of E/π [cd/m²] from [`Self::start`].
     pub(super) fn sample(
         &self,
         tracer: &Tracer,
@@ -47,13 +46,19 @@ impl Site {
         transport: &Transport,
         tally: &mut Tally,
     ) -> Option<Vec3> {
+        let start = self.start(tracer, numbers, start)?;
+        Some(tracer.diffuse_radiance(&start, numbers, transport, tally))
+    }
+
+    /// Where a path starts, a place on the texel that can be reached from its anchor; `None` where the numbers say
+    /// another.
+    pub(super) fn start(&self, tracer: &Tracer, numbers: &impl Sampler, start: Start) -> Option<PathStart> {
         match start {
-            Start::Anywhere => Some(tracer.diffuse_radiance(&self.footing.anchor, numbers, transport, tally)),
+            Start::Anywhere => Some(self.footing.anchor),
             Start::Drawn => {
                 let [u, v, ..] = numbers.draw(Dimensions::Start);
                 let drawn = self.covered.texel.start(tracer, Vec2::new(u, v));
-                let is_reached = self.footing.reaches(tracer, &drawn);
-                is_reached.then(|| tracer.diffuse_radiance(&drawn, numbers, transport, tally))
+                self.footing.reaches(tracer, &drawn).then_some(drawn)
             }
         }
     }

@@ -71,20 +71,25 @@ pub(super) struct Tile {
     /// By number in the list of sites.
     pub(super) sites: Vec<u32>,
     /// Of each, the places in the tile of those around it in its chart.
-    around: Vec<Vec<u8>>,
+    around: Vec<Vec<u16>>,
+    groups: Vec<Vec<u16>>,
 }
 
 /// All tiles, in an order of chance: of any first part of it the rest can be told.
 pub(super) fn tiles(sites: &[Site]) -> Vec<Tile> {
     let mut by_place: BTreeMap<[u32; 4], Vec<u32>> = BTreeMap::new();
     for (number, Site { covered, .. }) in sites.iter().enumerate() {
-        let [x, y] = covered.place.map(|along| along / SIDE);
+        let [x, y] = covered.place.map(|along| along / env("SIDE", SIDE));
         by_place.entry([covered.page, covered.receiver, y, x]).or_default().push(number as u32);
     }
     let mut tiles: Vec<Tile> = by_place.into_values().map(|of_tile| Tile::new(of_tile, sites)).collect();
     // Keys of texels are hashes.
     tiles.sort_by_key(|tile| sites[tile.sites[0] as usize].covered.key);
     tiles
+}
+
+fn env(name: &str, or: u32) -> u32 {
+    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(or)
 }
 
 impl Tile {
@@ -96,9 +101,16 @@ impl Tile {
         };
         let of_one = |&one: &u32| {
             let others = of_tile.iter().enumerate().filter(|&(_, &other)| other != one && is_beside(one, other));
-            others.map(|(place, _)| place as u8).collect()
+            others.map(|(place, _)| place as u16).collect()
         };
-        Self { around: of_tile.iter().map(of_one).collect(), sites: of_tile }
+        let stride = env("STRIDE", 8);
+        let most = env("MOST", 8) as usize;
+        let mut by: BTreeMap<[u32; 2], Vec<u16>> = BTreeMap::new();
+        for (place, &site) in of_tile.iter().enumerate() {
+            by.entry(sites[site as usize].covered.place.map(|along| along % stride)).or_default().push(place as u16);
+        }
+        let groups = by.into_values().flat_map(|g| g.chunks(most).map(<[u16]>::to_vec).collect::<Vec<_>>()).collect();
+        Self { around: of_tile.iter().map(of_one).collect(), sites: of_tile, groups }
     }
 
     /// Measures its texels, in their order; `None` if cancelled.
@@ -160,11 +172,50 @@ impl<'a> Rounds<'a> {
         takes_part: impl Fn(usize) -> bool,
         cancel: &CancelToken,
     ) -> Option<()> {
-        for (place, (runs, &site)) in self.runs.iter_mut().zip(&self.tile.sites).enumerate() {
-            if takes_part(place) {
-                self.sites[site as usize].carry_on(runs, self.tracer, paths, self.transport, cancel)?;
-                self.estimates[place] = runs.estimate();
+        for group in &self.tile.groups {
+            let open: Vec<usize> = group.iter().map(|&place| place as usize).filter(|&place| takes_part(place)).collect();
+            self.together(&open, paths, cancel)?;
+            for &place in &open {
+                self.estimates[place] = self.runs[place].estimate();
             }
+        }
+        Some(())
+    }
+
+    fn together(&mut self, open: &[usize], paths: u32, cancel: &CancelToken) -> Option<()> {
+        let Some(&first) = open.first() else { return Some(()) };
+        let per_run = self.runs[first].per_run(paths);
+        let (mut starts, mut found) = (Vec::new(), Vec::new());
+        let mut light = [glam::Vec3::ZERO; crate::trace::MOST_RECEIVERS];
+        for number in 0..super::gather::REPLICATES {
+            for sample in self.runs[first].accepted()..per_run {
+                if sample % 16 == 0 && cancel.is_cancelled() {
+                    return None;
+                }
+                starts.clear();
+                found.clear();
+                for &place in open {
+                    let runs = &mut self.runs[place];
+                    let site = &self.sites[self.tile.sites[place] as usize];
+                    let (numbers, start) = loop {
+                        let (numbers, start) = runs.next(number, per_run);
+                        if let Some(start) = site.start(self.tracer, &numbers, start) {
+                            break (numbers, start);
+                        }
+                    };
+                    found.push(self.tracer.find(&start, &numbers, self.transport, runs.tally()));
+                    starts.push(start);
+                }
+                light[..open.len()].fill(glam::Vec3::ZERO);
+                let rays = self.tracer.deal(&starts, &found, &mut light[..open.len()]);
+                self.runs[first].tally().rays += rays;
+                for (&place, &light) in open.iter().zip(&light) {
+                    self.runs[place].add(number, light);
+                }
+            }
+        }
+        for &place in open {
+            self.runs[place].are(per_run);
         }
         Some(())
     }
@@ -179,7 +230,7 @@ impl<'a> Rounds<'a> {
 
     /// Half the width of the 95 % interval of a texel's luminance, and what its error is relative to [cd/m²].
     fn pooled(&self, place: usize, looks: Looks) -> [f64; 2] {
-        let around = || std::iter::once(place).chain(self.tile.around[place].iter().map(|&other| other.into()));
+        let around = || std::iter::once(place).chain(self.tile.around[place].iter().map(|&other| usize::from(other)));
         let count = around().count();
         let mean =
             |of: &dyn Fn(&Estimate) -> f64| around().map(|at| of(&self.estimates[at])).sum::<f64>() / count as f64;

@@ -32,7 +32,7 @@ pub use aim::Aim;
 pub(crate) use census::{Census, effect_of};
 pub(crate) use compile::Compiled;
 pub use effects::{Effect, EffectSet, ForcedEffects};
-pub(crate) use path::{MAX_VERTICES, PathStart, Tally};
+pub(crate) use path::{Found, MAX_VERTICES, MOST_RECEIVERS, PathStart, Tally};
 pub(crate) use sampler::{Dimensions, Independent, Sampler, Sobol};
 pub(crate) use tracer::Receiver;
 pub use tracer::{RayHit, Tracer};

@@ -13,10 +13,12 @@
 //!
 //! All of it is generic over the kernel `K` ([`super::kernel`]).
 
+mod reuse;
 mod start;
 mod vertex;
 mod walk;
 
+pub(crate) use reuse::{Found, MOST_RECEIVERS};
 pub(crate) use start::PathStart;
 
 use super::kernel::with_kernel;
@@ -51,6 +53,17 @@ impl Tracer {
         tally: &mut Tally,
     ) -> Vec3 {
         with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).receive(start))
+    }
+
+    /// The same, as far as it can serve other receivers apart from what cannot.
+    pub(crate) fn find(
+        &self,
+        start: &PathStart,
+        sampler: &impl Sampler,
+        transport: &Transport,
+        tally: &mut Tally,
+    ) -> Found {
+        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).find(start))
     }
 
     /// Radiance that arrives against `direction` at `origin`, a point of the world, along a camera's ray [cd/m²]. Lights

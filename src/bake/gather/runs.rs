@@ -54,30 +54,63 @@ impl Runs {
         cancel: &CancelToken,
         mut path: impl FnMut(&Sobol, Start, &mut Tally) -> Option<Vec3>,
     ) -> Option<()> {
-        let per_run = u64::from(count.div_ceil(REPLICATES));
-        for (number, run) in self.runs.iter_mut().enumerate() {
-            let key = combine(self.key, number as u64);
+        let per_run = self.per_run(count);
+        for number in 0..REPLICATES {
             let mut accepted = self.accepted;
             while accepted < per_run {
+                let run = self.runs[number as usize];
                 if run.index % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {
                     return None;
                 }
-                let start = if run.index < PATIENCE * per_run { Start::Drawn } else { Start::Anywhere };
-                let value = path(&Sobol::new(key, run.index), start, &mut self.tally);
-                run.index += 1;
-                let Some(value) = value else { continue };
+                let (numbers, start) = self.next(number, per_run);
+                let Some(value) = path(&numbers, start, &mut self.tally) else { continue };
                 accepted += 1;
-                if !is_light(value) {
-                    self.not_light += 1;
-                    continue;
-                }
-                let kept = clamped(value, self.clamp);
-                run.taken += luminance(value - kept);
-                run.sum += kept.as_dvec3();
+                self.add(number, value);
             }
         }
-        self.accepted = self.accepted.max(per_run);
+        self.are(per_run);
         Some(())
+    }
+
+    /// How many paths each run is to have where there are to be `count` in all.
+    pub(in crate::bake) fn per_run(&self, count: u32) -> u64 {
+        u64::from(count.div_ceil(REPLICATES))
+    }
+
+    /// Paths of each run so far.
+    pub(in crate::bake) fn accepted(&self) -> u64 {
+        self.accepted
+    }
+
+    /// The numbers of a run's next try, and whether its start may be refused.
+    pub(in crate::bake) fn next(&mut self, number: u32, per_run: u64) -> (Sobol, Start) {
+        let run = &mut self.runs[number as usize];
+        let start = if run.index < PATIENCE * per_run { Start::Drawn } else { Start::Anywhere };
+        let numbers = Sobol::new(combine(self.key, number.into()), run.index);
+        run.index += 1;
+        (numbers, start)
+    }
+
+    /// Adds a path's value to a run.
+    pub(in crate::bake) fn add(&mut self, number: u32, value: Vec3) {
+        if !is_light(value) {
+            self.not_light += 1;
+            return;
+        }
+        let run = &mut self.runs[number as usize];
+        let kept = clamped(value, self.clamp);
+        run.taken += luminance(value - kept);
+        run.sum += kept.as_dvec3();
+    }
+
+    /// Says that each run has had so many paths.
+    pub(in crate::bake) fn are(&mut self, per_run: u64) {
+        self.accepted = self.accepted.max(per_run);
+    }
+
+    /// What its paths did.
+    pub(in crate::bake) fn tally(&mut self) -> &mut Tally {
+        &mut self.tally
     }
 
     /// What they say.

@@ -3,6 +3,7 @@
 mod light;
 
 use super::vertex::{Ray, Vertex};
+use super::reuse::{Found, Whence};
 use super::{PathStart, Tally};
 use crate::math::{Frame, Portable};
 use crate::trace::accel::Hit;
@@ -33,6 +34,15 @@ pub(crate) const MAX_VERTICES: u32 = 1 << 16;
 
 /// The largest chance to pass a surface that is there at all, so that what it shows is not missed.
 const MAX_PASSING: f32 = 0.999;
+
+/// Where a ray comes to.
+enum Arrival<'t> {
+    At(Vertex<'t>),
+    /// Out of the scene; what shines there is still to be added.
+    Outside,
+    /// The path is at its end.
+    Ended,
+}
 
 /// A path in the making.
 pub(super) struct Walk<'t, const K: u32, S> {
@@ -81,8 +91,36 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
 
     /// E/π at a receiver, by one path.
     pub(super) fn receive(mut self, start: &PathStart) -> Vec3 {
+        self.go_on(Self::receiver(start));
+        self.radiance
+    }
+
+    /// The same, in two parts: what serves this receiver alone, and what others can use that see where it came from.
+    pub(super) fn find(mut self, start: &PathStart) -> Found {
+        if K & (LAYERED | PASSING) != 0 {
+            return Found::alone(self.receive(start));
+        }
+        let Some(ray) = self.leave(&Self::receiver(start)) else { return Found::alone(self.radiance) };
+        let place = match self.arrive(&ray) {
+            Arrival::At(next) => {
+                let alone = std::mem::take(&mut self.radiance);
+                let place = Whence::Surface(next.origin, next.geometric_normal);
+                self.number += 1;
+                self.go_on(next);
+                return Found { alone, place, radiance: self.radiance };
+            }
+            Arrival::Outside => Whence::Distance(ray.direction),
+            Arrival::Ended => return Found::alone(self.radiance),
+        };
+        // Sources are light sampling's too, by weights that are this receiver's own.
+        self.meet_distant(&ray);
+        Found { alone: self.radiance, place, radiance: self.throughput * self.tracer.sky_radiance }
+    }
+
+    /// A receiver as a path's first vertex.
+    fn receiver(start: &PathStart) -> Vertex<'t> {
         let lambert = Lambert { albedo: Vec3::ONE };
-        let vertex = Vertex {
+        Vertex {
             position: start.position,
             origin: start.origin,
             geometric_normal: start.geometric_normal,
@@ -92,15 +130,15 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             bsdf: Bsdf::Lambert(lambert),
             triangle: None,
             beyond: None,
-        };
-        self.go_on(vertex);
-        self.radiance
+        }
     }
 
     /// Radiance that arrives against a camera's ray, by one path.
     pub(super) fn look_along(mut self, ray: Ray) -> Vec3 {
-        if let Some(vertex) = self.arrive(&ray) {
-            self.go_on(vertex);
+        match self.arrive(&ray) {
+            Arrival::At(vertex) => self.go_on(vertex),
+            Arrival::Outside => self.escape(&ray),
+            Arrival::Ended => {}
         }
         self.radiance
     }
@@ -108,8 +146,9 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
     fn go_on(&mut self, mut vertex: Vertex<'t>) {
         while let Some(ray) = self.leave(&vertex) {
             match self.arrive(&ray) {
-                Some(next) => vertex = next,
-                None => return,
+                Arrival::At(next) => vertex = next,
+                Arrival::Outside => return self.escape(&ray),
+                Arrival::Ended => return,
             }
             self.number += 1;
             if self.number >= MAX_VERTICES {
@@ -155,9 +194,9 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         Some(Ray { origin, direction, context, density: sample.density, survival: Some(u_survive) })
     }
 
-    /// Follows a ray to the next vertex; adds what light it meets. `None` where the path ends.
+    /// Follows a ray to the next vertex; adds what light it meets within the scene.
     #[inline]
-    fn arrive(&mut self, ray: &Ray) -> Option<Vertex<'t>> {
+    fn arrive(&mut self, ray: &Ray) -> Arrival<'t> {
         let tracer = self.tracer;
         let mut origin = ray.origin;
         // Straight through surfaces that were passed.
@@ -176,8 +215,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
                 self.meet_sources(ray, origin, passed, end);
             }
             let Some(hit) = hit else {
-                self.escape(ray);
-                return None;
+                return Arrival::Outside;
             };
             let surface = tracer.surface(hit.triangle);
             if K & LAYERED != 0 && !self.knows_body {
@@ -201,7 +239,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
                 self.radiance += passage.glow * self.glow_met(ray, hit, surface, passed);
                 self.throughput *= passage.transmittance;
             } else {
-                return None;
+                return Arrival::Ended;
             }
             let shape = &tracer.triangles[hit.triangle as usize];
             origin = shape.leave(shape.position(hit.barycentric), ray.direction);
@@ -211,7 +249,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         let place = hit.place();
         self.radiance += self.glow_met(ray, hit, surface, passed);
         if ray.survival.is_some() && self.max_bounces.is_some_and(|cap| self.number >= cap) {
-            return None;
+            return Arrival::Ended;
         }
         let vertex = self.vertex(shape, place, ray);
         let albedo = if K & LAYERED == 0 { vertex.lambert.albedo } else { vertex.bsdf.albedo(vertex.wo) };
@@ -220,20 +258,20 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         if !carried.is_finite() {
             // A path that has lost its number is given up as a whole, and counted where it is added up.
             self.radiance = Vec3::NAN;
-            return None;
+            return Arrival::Ended;
         }
         if carried <= 0.0 {
-            return None;
+            return Arrival::Ended;
         }
         if let Some(u_survive) = ray.survival {
             let survival = survival_probability(carried);
             if u_survive >= survival {
-                return None;
+                return Arrival::Ended;
             }
             self.throughput /= survival;
         }
         self.triangle = hit.triangle;
-        Some(vertex)
+        Arrival::At(vertex)
     }
 
     /// What the glow of a surface adds that a ray meets, after what it passed.
@@ -311,6 +349,12 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         // Nothing of a body that has no end gets out.
         self.absorb(f32::INFINITY);
         self.radiance += self.throughput * self.tracer.sky_radiance;
+        self.meet_distant(ray);
+    }
+
+    /// The same, of all but a constant sky.
+    #[inline]
+    fn meet_distant(&mut self, ray: &Ray) {
         if K & DISTANT == 0 {
             return;
         }
