@@ -1,4 +1,5 @@
-//! The denoiser against long references (`tests/data/README.md`): 64 samples and it against 512 without it, and the
+//! The denoiser against long references (`tests/data/README.md`): 64 samples and it against 512 without it whose paths serve
+//! no other texel, and the
 //! contrast of contact shadows and shadow edges, in the mean of a few bakes with other random numbers: of a single one
 //! either is a matter of luck. What is judged by contrast and error is itself judged: a blur must fail the one, and what
 //! is not denoised the other.
@@ -12,7 +13,7 @@ mod reference;
 mod scenes;
 
 use bevy_kiln::bake::{BakeSettings, CancelToken, Denoise, Goal, Layout, Lightmap, Page, bake_lightmap};
-use bevy_kiln::trace::Transport;
+use bevy_kiln::trace::{Sharing, Transport};
 use judge::{Error, Judge, blurred};
 use reference::Reference;
 use scenes::Case;
@@ -26,11 +27,11 @@ const LONGER: u32 = 16384;
 /// Bakes of a case, each with its own random numbers.
 const BAKES: u64 = 5;
 
-fn bake(case: &Case, samples_per_texel: u32, denoise: Denoise, number: u64) -> Lightmap {
+fn bake(case: &Case, samples_per_texel: u32, denoise: Denoise, sharing: Sharing, number: u64) -> Lightmap {
     let settings = BakeSettings {
         goal: Goal::Samples(samples_per_texel),
         layout: Layout::Shared { size: case.size },
-        transport: Transport { seed: u64::from(samples_per_texel) + number, ..Transport::default() },
+        transport: Transport { sharing, seed: u64::from(samples_per_texel) + number, ..Transport::default() },
         denoise,
         ..BakeSettings::default()
     };
@@ -56,8 +57,8 @@ struct Seen {
 
 impl Seen {
     fn new(case: &Case, reference: &Reference, number: u64) -> Self {
-        let few = bake(case, 64, Denoise::BuiltIn, number);
-        let many = bake(case, 512, Denoise::Off, number);
+        let few = bake(case, 64, Denoise::BuiltIn, Sharing::Group, number);
+        let many = bake(case, 512, Denoise::Off, Sharing::Alone, number);
         let page = &few.pages[0];
         let judge = Judge::new(page, reference);
         let report = few.report.denoised.unwrap();
@@ -151,7 +152,7 @@ fn make_references() {
     let only = std::env::var("DENOISE_ONLY").ok();
     for case in scenes::all().into_iter().filter(|case| only.as_deref().is_none_or(|only| only == case.name)) {
         let samples = if case.name == "sunlit" { LONG } else { LONGER };
-        let lightmap = bake(&case, samples, Denoise::Off, 0);
+        let lightmap = bake(&case, samples, Denoise::Off, Sharing::Group, 0);
         let page: &Page = &lightmap.pages[0];
         reference::save(case.name, page);
         println!("{}: {:?}", case.name, lightmap.report.relative_stderr);

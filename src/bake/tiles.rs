@@ -16,8 +16,10 @@
 //! `tests/calibration` holds what comes of all this against long references.
 
 mod quantile;
+mod together;
 
 pub(super) use quantile::Looks;
+use together::{carry_on, groups};
 
 use super::CancelToken;
 use super::gather::{Estimate, Runs};
@@ -27,7 +29,7 @@ use crate::trace::{Tracer, Transport};
 use std::collections::BTreeMap;
 
 /// Side of a tile [texels].
-const SIDE: u32 = 8;
+const SIDE: u32 = 16;
 
 /// Paths of the first round: four in each run, or their spread is no variance to speak of.
 pub(super) const LEAST_PATHS: u32 = 64;
@@ -72,6 +74,7 @@ pub(super) struct Tile {
     pub(super) sites: Vec<u32>,
     /// Of each, the places in the tile of those around it in its chart.
     around: Vec<Vec<u16>>,
+    /// Places in the tile of those that trace together.
     groups: Vec<Vec<u16>>,
 }
 
@@ -79,17 +82,13 @@ pub(super) struct Tile {
 pub(super) fn tiles(sites: &[Site]) -> Vec<Tile> {
     let mut by_place: BTreeMap<[u32; 4], Vec<u32>> = BTreeMap::new();
     for (number, Site { covered, .. }) in sites.iter().enumerate() {
-        let [x, y] = covered.place.map(|along| along / env("SIDE", SIDE));
+        let [x, y] = covered.place.map(|along| along / SIDE);
         by_place.entry([covered.page, covered.receiver, y, x]).or_default().push(number as u32);
     }
     let mut tiles: Vec<Tile> = by_place.into_values().map(|of_tile| Tile::new(of_tile, sites)).collect();
     // Keys of texels are hashes.
     tiles.sort_by_key(|tile| sites[tile.sites[0] as usize].covered.key);
     tiles
-}
-
-fn env(name: &str, or: u32) -> u32 {
-    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(or)
 }
 
 impl Tile {
@@ -103,13 +102,7 @@ impl Tile {
             let others = of_tile.iter().enumerate().filter(|&(_, &other)| other != one && is_beside(one, other));
             others.map(|(place, _)| place as u16).collect()
         };
-        let stride = env("STRIDE", 8);
-        let most = env("MOST", 8) as usize;
-        let mut by: BTreeMap<[u32; 2], Vec<u16>> = BTreeMap::new();
-        for (place, &site) in of_tile.iter().enumerate() {
-            by.entry(sites[site as usize].covered.place.map(|along| along % stride)).or_default().push(place as u16);
-        }
-        let groups = by.into_values().flat_map(|g| g.chunks(most).map(<[u16]>::to_vec).collect::<Vec<_>>()).collect();
+        let groups = groups(of_tile.iter().map(|&number| covered(number).place));
         Self { around: of_tile.iter().map(of_one).collect(), sites: of_tile, groups }
     }
 
@@ -173,49 +166,17 @@ impl<'a> Rounds<'a> {
         cancel: &CancelToken,
     ) -> Option<()> {
         for group in &self.tile.groups {
-            let open: Vec<usize> = group.iter().map(|&place| place as usize).filter(|&place| takes_part(place)).collect();
-            self.together(&open, paths, cancel)?;
-            for &place in &open {
+            let mut is_in = vec![false; self.runs.len()];
+            for place in group.iter().map(|&place| usize::from(place)) {
+                is_in[place] = takes_part(place);
+            }
+            let sites = self.tile.sites.iter().map(|&site| &self.sites[site as usize]);
+            let all = sites.zip(&mut self.runs).zip(&is_in);
+            let mut open: Vec<(&Site, &mut Runs)> = all.filter(|(_, is_in)| **is_in).map(|(texel, _)| texel).collect();
+            carry_on(&mut open, paths, (self.tracer, self.transport), cancel)?;
+            for place in (0..is_in.len()).filter(|&place| is_in[place]) {
                 self.estimates[place] = self.runs[place].estimate();
             }
-        }
-        Some(())
-    }
-
-    fn together(&mut self, open: &[usize], paths: u32, cancel: &CancelToken) -> Option<()> {
-        let Some(&first) = open.first() else { return Some(()) };
-        let per_run = self.runs[first].per_run(paths);
-        let (mut starts, mut found) = (Vec::new(), Vec::new());
-        let mut light = [glam::Vec3::ZERO; crate::trace::MOST_RECEIVERS];
-        for number in 0..super::gather::REPLICATES {
-            for sample in self.runs[first].accepted()..per_run {
-                if sample % 16 == 0 && cancel.is_cancelled() {
-                    return None;
-                }
-                starts.clear();
-                found.clear();
-                for &place in open {
-                    let runs = &mut self.runs[place];
-                    let site = &self.sites[self.tile.sites[place] as usize];
-                    let (numbers, start) = loop {
-                        let (numbers, start) = runs.next(number, per_run);
-                        if let Some(start) = site.start(self.tracer, &numbers, start) {
-                            break (numbers, start);
-                        }
-                    };
-                    found.push(self.tracer.find(&start, &numbers, self.transport, runs.tally()));
-                    starts.push(start);
-                }
-                light[..open.len()].fill(glam::Vec3::ZERO);
-                let rays = self.tracer.deal(&starts, &found, &mut light[..open.len()]);
-                self.runs[first].tally().rays += rays;
-                for (&place, &light) in open.iter().zip(&light) {
-                    self.runs[place].add(number, light);
-                }
-            }
-        }
-        for &place in open {
-            self.runs[place].are(per_run);
         }
         Some(())
     }

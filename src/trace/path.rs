@@ -13,12 +13,13 @@
 //!
 //! All of it is generic over the kernel `K` ([`super::kernel`]).
 
-mod reuse;
+mod sharing;
 mod start;
 mod vertex;
 mod walk;
 
-pub(crate) use reuse::{Found, MOST_RECEIVERS};
+use sharing::Found;
+pub(crate) use sharing::MOST_RECEIVERS;
 pub(crate) use start::PathStart;
 
 use super::kernel::with_kernel;

@@ -14,6 +14,17 @@ pub enum Estimator {
     Bsdf,
 }
 
+/// Whom the paths of a lightmap's texel serve. The mean is the same; a bake of shared paths has less noise.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Sharing {
+    /// A group of up to sixteen texels of one object, none beside another, that see where the light came from (Bekaert,
+    /// Sbert and Halton 2002). Between matt surfaces only; elsewhere as [`Self::Alone`].
+    #[default]
+    Group,
+    /// The texel alone: no two texels' errors have to do with each other.
+    Alone,
+}
+
 /// How light is followed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Transport {
@@ -21,6 +32,8 @@ pub struct Transport {
     pub estimator: Estimator,
     /// Bounces before a path is cut, which loses light: `Some(0)` is direct light only. `None` has no cap.
     pub max_bounces: Option<u32>,
+    /// Whom the paths of a lightmap's texel serve.
+    pub sharing: Sharing,
     /// Changes every random number, and nothing else.
     pub seed: u64,
     /// The most that one path may bring [cd/m²]: takes out bright specks and, with them, light. `None` takes nothing.

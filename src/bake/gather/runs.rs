@@ -54,12 +54,11 @@ impl Runs {
         cancel: &CancelToken,
         mut path: impl FnMut(&Sobol, Start, &mut Tally) -> Option<Vec3>,
     ) -> Option<()> {
-        let per_run = self.per_run(count);
+        let per_run = u64::from(count.div_ceil(REPLICATES));
         for number in 0..REPLICATES {
             let mut accepted = self.accepted;
             while accepted < per_run {
-                let run = self.runs[number as usize];
-                if run.index % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {
+                if self.runs[number as usize].index % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {
                     return None;
                 }
                 let (numbers, start) = self.next(number, per_run);
@@ -72,23 +71,33 @@ impl Runs {
         Some(())
     }
 
-    /// How many paths each run is to have where there are to be `count` in all.
-    pub(in crate::bake) fn per_run(&self, count: u32) -> u64 {
-        u64::from(count.div_ceil(REPLICATES))
+    /// The next start of a run that is not refused, and its path's numbers. At the end the path's value is to be added.
+    pub(in crate::bake) fn start<T>(
+        &mut self,
+        number: u32,
+        per_run: u64,
+        start: impl Fn(&Sobol, Start) -> Option<T>,
+    ) -> (T, Sobol) {
+        loop {
+            let (numbers, kind) = self.next(number, per_run);
+            if let Some(start) = start(&numbers, kind) {
+                return (start, numbers);
+            }
+        }
     }
 
-    /// Paths of each run so far.
-    pub(in crate::bake) fn accepted(&self) -> u64 {
-        self.accepted
-    }
-
-    /// The numbers of a run's next try, and whether its start may be refused.
-    pub(in crate::bake) fn next(&mut self, number: u32, per_run: u64) -> (Sobol, Start) {
+    /// The numbers of a run's next try, and whether it may be refused.
+    fn next(&mut self, number: u32, per_run: u64) -> (Sobol, Start) {
         let run = &mut self.runs[number as usize];
         let start = if run.index < PATIENCE * per_run { Start::Drawn } else { Start::Anywhere };
         let numbers = Sobol::new(combine(self.key, number.into()), run.index);
         run.index += 1;
         (numbers, start)
+    }
+
+    /// Paths of each run that were not refused.
+    pub(in crate::bake) fn paths_per_run(&self) -> u64 {
+        self.accepted
     }
 
     /// Adds a path's value to a run.

@@ -91,6 +91,7 @@ fn denoise_page(field: &mut Field, workers: &Workers<'_>) -> Result<(), BakeErro
     let small = level(&texels, &looks, small, workers)?;
     let looks = [0, 1].map(|half| Looks::fitted(&texels, small.iter().map(|level| level.own[half])));
     let large = level(&texels, &looks, large, workers)?;
+    let kinship = kinship(&texels, &large);
     let best = select::best(&texels, [&small, &large], workers)?;
     let ranges = small.iter().zip(&large).map(|(small, large)| widest(small.range, large.range));
     for ((&index, [value, residual]), range) in texels.measured.iter().zip(best).zip(ranges) {
@@ -99,9 +100,25 @@ fn denoise_page(field: &mut Field, workers: &Workers<'_>) -> Result<(), BakeErro
         let is_exact = stderr.cmpeq(Vec3::ZERO);
         let value = allowed(field.value[index], REACH * stderr.max(field.stderr[index]), range, value);
         field.value[index] = Vec3::select(is_exact, field.value[index], value);
-        field.residual[index] = Vec3::select(is_exact, Vec3::ZERO, residual);
+        field.residual[index] = Vec3::select(is_exact, Vec3::ZERO, kinship * residual);
     }
     Ok(())
+}
+
+/// How much more is left of the error than if no two texels erred together, as those do that share paths: what the two
+/// independent halves differ by after denoising, over what they would, never below 1.
+fn kinship(texels: &Texels, levels: &[Level]) -> f32 {
+    let value = |index: usize| luminance(texels.mean(index).as_dvec3());
+    let mean = texels.measured.iter().map(|&index| value(index)).sum::<f64>() / texels.measured.len().max(1) as f64;
+    let [mut seen, mut told] = [0.0_f64; 2];
+    for (&index, Level { crossed: [first, second], .. }) in texels.measured.iter().zip(levels) {
+        // Relative, but not to what is nearly black.
+        let weight = (value(index) + mean).powi(-2);
+        let [off, variance] = [first.value - second.value, first.variance + second.variance];
+        seen += weight * f64::from(off.length_squared());
+        told += weight * f64::from(variance.element_sum());
+    }
+    if told > 0.0 { (seen / told).sqrt().max(1.0) as f32 } else { 1.0 }
 }
 
 fn live(cancel: &CancelToken) -> Option<()> {

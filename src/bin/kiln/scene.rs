@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use bevy_kiln::bake::{BakeSettings, CancelToken, Layout};
 use bevy_kiln::plugin::windowless::{load_environment, open_scene, unread_parts};
 use bevy_kiln::plugin::{Extraction, RangeWindow, SceneSettings, extract_scene};
-use bevy_kiln::trace::{Estimator, ForcedEffects, Transport};
+use bevy_kiln::trace::{Estimator, ForcedEffects, Sharing, Transport};
 use glam::Vec3;
 
 /// Loads and reads the scene.
@@ -45,7 +45,8 @@ pub(crate) fn transport(args: &SceneArgs) -> Transport {
     };
     let effects =
         ForcedEffects { on: args.with.iter().copied().collect(), off: args.without.iter().copied().collect() };
-    Transport { estimator, max_bounces: args.max_bounces.0, seed: args.seed, clamp: args.clamp, effects }
+    let (max_bounces, sharing) = (args.max_bounces.0, Sharing::default());
+    Transport { estimator, max_bounces, sharing, seed: args.seed, clamp: args.clamp, effects }
 }
 
 pub(crate) fn bake_settings(scene: &SceneArgs, layout: &LayoutArgs, goal: &GoalArgs) -> Result<BakeSettings, Failure> {

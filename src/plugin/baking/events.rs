@@ -4,7 +4,7 @@
 use super::extract::extract_scene;
 use super::settings::SceneSettings;
 use crate::bake::{BakeError, BakePlan, BakeSettings, Denoise, Goal, Layout, Lightmap, Progress, Stage};
-use crate::trace::{Estimator, ForcedEffects, Transport};
+use crate::trace::{Estimator, ForcedEffects, Sharing, Transport};
 use bevy::prelude::*;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -138,6 +138,7 @@ impl BakeLightmaps {
             transport: Transport {
                 estimator: self.estimator,
                 max_bounces: self.max_bounces,
+                sharing: Sharing::default(),
                 seed: self.seed,
                 clamp: self.clamp,
                 effects: self.effects,

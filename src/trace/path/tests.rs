@@ -331,23 +331,3 @@ fn smooth_surfaces_have_no_facets_along_the_edge_of_their_shade() {
     println!("of the light along the terminator, wrong: {lifted:.3} lifted, {flat:.3} flat");
     assert!(lifted < 1e-3 && flat > 0.03, "{lifted} lifted, {flat} flat");
 }
-
-#[test]
-fn zz_dealt() {
-    let (tracer, _) = furnace(0.5);
-    let starts = [[0.2, 0.3], [0.3, 0.3], [0.6, 0.2], [0.1, 0.1]].map(|at| tracer.start_on_triangle(0, at, tracer.normal(0)));
-    let other = [[0.2, 0.3], [0.5, 0.4]].map(|at| tracer.start_on_triangle(4, at, tracer.normal(4)));
-    let starts: Vec<PathStart> = starts.into_iter().chain(other).collect();
-    let transport = Transport::default();
-    let mut sums = vec![Vec3::ZERO; starts.len()];
-    let mut own = sums.clone();
-    let count = 1 << 15;
-    for index in 0..count {
-        let found: Vec<_> = starts.iter().enumerate().map(|(k, start)| tracer.find(start, &Sobol::new(combine(5, k as u64), index), &transport, &mut Tally::default())).collect();
-        for (own, found) in own.iter_mut().zip(&found) { *own += found.alone + found.radiance; }
-        tracer.deal(&starts, &found, &mut sums);
-    }
-    for (own, sum) in own.iter().zip(&sums) {
-        println!("{} {}", own.x / count as f32, sum.x / count as f32);
-    }
-}

@@ -2,8 +2,8 @@
 
 mod light;
 
+use super::sharing::{Found, Shared, Whence};
 use super::vertex::{Ray, Vertex};
-use super::reuse::{Found, Whence};
 use super::{PathStart, Tally};
 use crate::math::{Frame, Portable};
 use crate::trace::accel::Hit;
@@ -16,7 +16,7 @@ use crate::trace::sampler::{Dimensions, Sampler};
 use crate::trace::shade::Place;
 use crate::trace::surface::TriangleShape;
 use crate::trace::tracer::Tracer;
-use crate::trace::transport::{Estimator, Transport};
+use crate::trace::transport::{Estimator, Sharing, Transport};
 use glam::{Vec2, Vec3};
 
 /// Throughput below which roulette begins. Too high, and it ends paths that are worth their time; too low, and paths
@@ -97,24 +97,26 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
 
     /// The same, in two parts: what serves this receiver alone, and what others can use that see where it came from.
     pub(super) fn find(mut self, start: &PathStart) -> Found {
-        if K & (LAYERED | PASSING) != 0 {
+        if K & (LAYERED | PASSING) != 0 || self.transport.sharing == Sharing::Alone {
             return Found::alone(self.receive(start));
         }
+        // A white Lambertian receiver: the density of directions is what it weighs them by, so that no factor is left.
         let Some(ray) = self.leave(&Self::receiver(start)) else { return Found::alone(self.radiance) };
-        let place = match self.arrive(&ray) {
-            Arrival::At(next) => {
+        match self.arrive(&ray) {
+            Arrival::At(vertex) => {
                 let alone = std::mem::take(&mut self.radiance);
-                let place = Whence::Surface(next.origin, next.geometric_normal);
+                let whence = Whence::Surface { point: vertex.origin, normal: vertex.geometric_normal };
                 self.number += 1;
-                self.go_on(next);
-                return Found { alone, place, radiance: self.radiance };
+                self.go_on(vertex);
+                Found { alone, shared: Some(Shared { whence, radiance: self.radiance }) }
             }
-            Arrival::Outside => Whence::Distance(ray.direction),
-            Arrival::Ended => return Found::alone(self.radiance),
-        };
-        // Sources are light sampling's too, by weights that are this receiver's own.
-        self.meet_distant(&ray);
-        Found { alone: self.radiance, place, radiance: self.throughput * self.tracer.sky_radiance }
+            Arrival::Outside => {
+                self.meet_distant(&ray);
+                let radiance = self.throughput * self.tracer.sky_radiance;
+                Found { alone: self.radiance, shared: Some(Shared { whence: Whence::Sky(ray.direction), radiance }) }
+            }
+            Arrival::Ended => Found::alone(self.radiance),
+        }
     }
 
     /// A receiver as a path's first vertex.

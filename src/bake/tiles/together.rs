@@ -1,0 +1,65 @@
+//! Texels that trace together: a path of one serves all ([`Tracer::share`]).
+//!
+//! Which texels are a group is a matter of their places in the tile, every [`STRIDE`]th along both axes. The errors of a
+//! group are alike, since they come from the same paths; those of neighbours, which a person or the denoiser compares,
+//! are of different groups and independent.
+
+use crate::bake::CancelToken;
+use crate::bake::gather::{REPLICATES, Runs};
+use crate::bake::sites::Site;
+use crate::trace::{MOST_RECEIVERS, Tracer, Transport};
+use glam::Vec3;
+use std::collections::BTreeMap;
+
+/// Distance between neighbours of one group [texels].
+pub(super) const STRIDE: u32 = 4;
+
+/// Steps between two looks at the cancel switch.
+const CANCEL_INTERVAL: u64 = 8;
+
+/// Groups of texels, by their numbers in a list of places.
+pub(super) fn groups(places: impl Iterator<Item = [u32; 2]>) -> Vec<Vec<u16>> {
+    let mut by_rest: BTreeMap<[u32; 2], Vec<u16>> = BTreeMap::new();
+    for (number, place) in places.enumerate() {
+        by_rest.entry(place.map(|along| along % STRIDE)).or_default().push(number as u16);
+    }
+    by_rest.values().flat_map(|group| group.chunks(MOST_RECEIVERS)).map(<[u16]>::to_vec).collect()
+}
+
+/// Carries the runs of a group on, which have had the same number of paths, until each has so many; `None` if
+/// cancelled.
+pub(super) fn carry_on(
+    group: &mut [(&Site, &mut Runs)],
+    paths: u32,
+    (tracer, transport): (&Tracer, &Transport),
+    cancel: &CancelToken,
+) -> Option<()> {
+    let Some((_, first)) = group.first() else { return Some(()) };
+    let (before, per_run) = (first.paths_per_run(), paths.div_ceil(REPLICATES).into());
+    let (mut starts, mut found) = (Vec::with_capacity(group.len()), Vec::with_capacity(group.len()));
+    for run in 0..REPLICATES {
+        for step in before..per_run {
+            if step % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {
+                return None;
+            }
+            starts.clear();
+            found.clear();
+            for (site, runs) in group.iter_mut() {
+                let (start, numbers) = runs.start(run, per_run, |numbers, start| site.start(tracer, numbers, start));
+                found.push(tracer.find(&start, &numbers, transport, runs.tally()));
+                starts.push(start);
+            }
+            let mut light = [Vec3::ZERO; MOST_RECEIVERS];
+            for (own, found) in found.iter().enumerate() {
+                tracer.share(&starts, own, found, &mut light, group[own].1.tally());
+            }
+            for ((_, runs), light) in group.iter_mut().zip(light) {
+                runs.add(run, light);
+            }
+        }
+    }
+    for (_, runs) in group {
+        runs.are(per_run);
+    }
+    Some(())
+}
