@@ -69,6 +69,7 @@ fn bake(
 mod tests {
     use super::super::testing::{box_of_light, settings};
     use super::*;
+    use crate::trace::Sharing;
 
     /// Receivers are measured as a bake measures its texels.
     #[test]
@@ -81,7 +82,9 @@ mod tests {
         for count in [16, 48, 64] {
             receivers.carry_on(receivers.tracer(), &manner, &mut sums, count).unwrap();
         }
-        let (lightmap, _) = bake(&scene, 64, &settings.bake, &cancel).unwrap();
+        let mut alone = settings.bake.clone();
+        alone.transport.sharing = Sharing::Alone;
+        let (lightmap, _) = bake(&scene, 64, &alone, &cancel).unwrap();
         assert!(receivers.count() >= 45);
         for (sums, [page, index]) in sums.iter().zip(receivers.places()) {
             let page = &lightmap.pages[page as usize];
