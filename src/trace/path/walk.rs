@@ -226,6 +226,10 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             return None;
         }
         if let Some(u_survive) = ray.survival {
+            if let Some(known) = tracer.known_light::<K>(hit, ray.direction, passed + hit.t) {
+                self.radiance += self.throughput * albedo * known;
+                return None;
+            }
             let survival = survival_probability(carried);
             if u_survive >= survival {
                 return None;
