@@ -20,7 +20,7 @@ use common::scenes::{SceneBuilder, grey};
 use glam::{Vec2, Vec3};
 
 /// Paths of each of the two references.
-const LONG: u32 = 1 << 14;
+const LONG: u32 = 1 << 13;
 
 struct Case {
     name: &'static str,
@@ -52,8 +52,8 @@ fn cases() -> [Case; 3] {
         density: 1.0,
     };
     [
-        shared(denoise_scenes::cornell(), 64),
-        shared(denoise_scenes::sunlit(), 96),
+        shared(denoise_scenes::cornell(), 48),
+        shared(denoise_scenes::sunlit(), 64),
         Case { name: "two rooms", scene: two_rooms(), layout: Layout::Packed, density: 8.0 },
     ]
 }

@@ -13,9 +13,9 @@ use super::gather::Estimate;
 use super::raster::triangle_area;
 use super::sites::Site;
 use super::workers::Workers;
-use super::{BakeError, BakeSettings, CancelToken, LaterBounces};
+use super::{BakeError, BakeSettings, CancelToken, LaterBounces, REPLICATES};
 use crate::math::combine;
-use crate::trace::{Effect, KnownCell, KnownGrid, KnownLight, Tracer, Unfolded};
+use crate::trace::{Effect, KnownCell, KnownGrid, KnownLight, Tracer, Transport, Unfolded};
 use cpu_time::ThreadTime;
 use std::time::Duration;
 
@@ -44,6 +44,13 @@ pub struct FirstPass {
     pub cpu_seconds: f64,
 }
 
+impl FirstPass {
+    /// Processor time of the bake's own, where this one has [`REPLICATES`] paths [s].
+    pub(super) fn predicted_seconds(self) -> f64 {
+        self.cpu_seconds * f64::from(FIRST_PATHS) / f64::from(REPLICATES)
+    }
+}
+
 /// What it takes to look at the texels of a bake.
 pub(super) struct Place<'a> {
     pub(super) tracer: &'a Tracer,
@@ -70,35 +77,45 @@ impl Place<'_> {
         if !is_asked_for(self.tracer, settings) {
             return Ok(None);
         }
-        let of_site = |site: &Site, cancel: &CancelToken| {
-            let clock = ThreadTime::now();
-            let mut runs = site.runs_with(combine(site.covered.key, FIRST_PASS), &settings.transport);
-            site.carry_on(&mut runs, self.tracer, paths, &settings.transport, cancel)?;
-            Some((runs.estimate(), clock.elapsed()))
-        };
-        let measured = workers.prepare(self.sites, of_site)?;
-        let cpu: Duration = measured.iter().map(|(_, cpu)| *cpu).sum();
-        let estimates = || measured.iter().map(|(estimate, _)| estimate);
-        let known = self.known_light(estimates());
-        let texels = estimates().filter(|estimate| is_sure(estimate)).count() as u64;
-        self.tracer.learn(known);
+        let (estimates, cpu) = self.measured(paths, &settings.transport, workers)?;
+        self.tracer.learn(self.known_light(&estimates));
         Ok(Some(FirstPass {
-            texels,
-            samples: estimates().map(|estimate| estimate.samples).sum(),
-            rays: estimates().map(|estimate| estimate.rays).sum(),
+            texels: self.sites.iter().zip(&estimates).filter(|(site, estimate)| is_light(site, estimate)).count()
+                as u64,
+            samples: estimates.iter().map(|estimate| estimate.samples).sum(),
+            rays: estimates.iter().map(|estimate| estimate.rays).sum(),
             cpu_seconds: cpu.as_secs_f64(),
         }))
     }
 
+    /// Every texel by so many paths, and the processor time that it took.
+    fn measured(
+        &self,
+        paths: u32,
+        transport: &Transport,
+        workers: &Workers<'_>,
+    ) -> Result<(Vec<Estimate>, Duration), BakeError> {
+        let of_site = |site: &Site, cancel: &CancelToken| {
+            let clock = ThreadTime::now();
+            let mut runs = site.runs_with(combine(site.covered.key, FIRST_PASS), transport);
+            site.carry_on(&mut runs, self.tracer, paths, transport, cancel)?;
+            Some((runs.estimate(), clock.elapsed()))
+        };
+        let (estimates, times): (Vec<Estimate>, Vec<Duration>) =
+            workers.prepare(self.sites, of_site)?.into_iter().unzip();
+        Ok((estimates, times.into_iter().sum()))
+    }
+
     /// Texels as the tracer reads them.
-    fn known_light<'e>(&self, estimates: impl Iterator<Item = &'e Estimate>) -> KnownLight {
+    fn known_light(&self, estimates: &[Estimate]) -> KnownLight {
         let charts = Charts::new(self.tracer, &self.atlas.charts);
         let mut known = KnownLight {
             unfolded: vec![Unfolded::UNKNOWN; self.tracer.triangle_count()],
             grids: self.atlas.pages.iter().map(|&size| empty_grid(size)).collect(),
         };
-        for (Site { covered, .. }, estimate) in self.sites.iter().zip(estimates) {
-            if is_sure(estimate) && !covered.is_overlapped {
+        for (site, estimate) in self.sites.iter().zip(estimates) {
+            if is_light(site, estimate) {
+                let covered = &site.covered;
                 known.grids[covered.page as usize].cells[covered.index as usize] =
                     KnownCell { radiance: estimate.mean.as_vec3(), chart: covered.chart };
             }
@@ -129,7 +146,10 @@ fn empty_grid([width, height]: [u32; 2]) -> KnownGrid {
     KnownGrid { width, cells: vec![KnownCell::UNKNOWN; width as usize * height as usize] }
 }
 
-/// Whether an estimate is that of the whole texel.
-fn is_sure(estimate: &Estimate) -> bool {
-    estimate.accepted >= LEAST_ACCEPTED && estimate.not_light == 0
+/// Whether an estimate is that of the whole texel, and of nothing else.
+fn is_light(site: &Site, estimate: &Estimate) -> bool {
+    estimate.accepted >= LEAST_ACCEPTED && estimate.not_light == 0 && !site.covered.is_overlapped
 }
+
+#[cfg(test)]
+mod tests;

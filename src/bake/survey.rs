@@ -130,9 +130,10 @@ impl Survey {
         DARK * self.mean
     }
 
-    /// Prices of a few errors.
-    pub(super) fn prices(&self) -> Vec<Prediction> {
-        PRICED_ERRORS.into_iter().map(|error| Prediction { error, seconds: self.seconds(error) }).collect()
+    /// Prices of a few errors, with processor time [s] that all of them take besides.
+    pub(super) fn prices(&self, besides: f64) -> Vec<Prediction> {
+        let seconds = |error| self.seconds(error) + self.wall_per_cpu * besides;
+        PRICED_ERRORS.into_iter().map(|error| Prediction { error, seconds: seconds(error) }).collect()
     }
 
     /// Time that tracing to an error will take [s].
