@@ -5,7 +5,6 @@
 //! `cargo bench --bench adaptive -- [fast | adaptive] [SCENE]`
 
 #[path = "../tests/common/mod.rs"]
-#[allow(dead_code, reason = "the tests use the rest")]
 mod common;
 #[path = "../tests/denoise/scenes.rs"]
 #[allow(dead_code, reason = "the denoiser's tests use the rest")]
@@ -20,7 +19,7 @@ use common::scenes::{SceneBuilder, grey};
 use glam::{Vec2, Vec3};
 
 /// Bakes with random numbers of their own that a texel's error is taken over.
-const SEEDS: u64 = 8;
+const SEEDS: u64 = 4;
 
 /// Paths of each of the two references.
 const LONG: u32 = 1 << 12;
@@ -143,7 +142,7 @@ fn adaptive(case: &Case, truth: &Truth) {
         let [rms, worst] = truth.errors(&bakes);
         ([samples.iter().sum::<u64>() as f64 / (SEEDS as usize * bakes[0].len()) as f64, worst], rms)
     };
-    let uniform: Vec<([f64; 2], f64)> = (5..11).map(|power| of(Goal::Samples(1 << power), 3)).collect();
+    let uniform: Vec<([f64; 2], f64)> = (6..10).map(|power| of(Goal::Samples(1 << power), 3)).collect();
     let curve: Vec<[f64; 2]> = uniform.iter().map(|(point, _)| *point).collect();
     let by_rms: Vec<[f64; 2]> = uniform.iter().map(|([paths, _], rms)| [*paths, *rms]).collect();
     for ([paths, worst], rms) in &uniform {

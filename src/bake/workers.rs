@@ -114,7 +114,7 @@ impl<'a> Workers<'a> {
         self.gather_quietly(items, |item, cancel| {
             let result = work(item, cancel)?;
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            if done % LARGEST_CHUNK as u64 == 0 {
+            if done.is_multiple_of(LARGEST_CHUNK as u64) {
                 self.progress.report(Progress { stage: Stage::Prepare, done, total, relative_stderr: None });
             }
             Some(result)
