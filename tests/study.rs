@@ -103,7 +103,7 @@ fn the_fast_mode_has_a_low_floor_and_errors_fall_as_asked() {
     let last = |technique| curve(technique).points.last().unwrap().error;
     assert!(last(Technique::Reused) < last(Technique::Mis));
     let adaptive = &curve(Technique::Adaptive).points;
-    assert!(adaptive.len() >= 3 && adaptive.windows(2).all(|pair| pair[0].error > pair[1].error), "{adaptive:?}");
+    assert!(adaptive.len() >= 2 && adaptive.windows(2).all(|pair| pair[0].error > pair[1].error), "{adaptive:?}");
 }
 
 #[test]
