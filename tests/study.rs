@@ -92,6 +92,20 @@ fn the_floor_of_direct_light_only_is_the_missing_light() {
     assert!(matches!(curve(Technique::Mis).price(0.005), Some(Cost::Extrapolated(_))));
 }
 
+/// A floor of the fast mode that lies far below what a cap leaves, for less time than whole paths take; and bakes to
+/// smaller and smaller errors.
+#[test]
+fn the_fast_mode_has_a_low_floor_and_errors_fall_as_asked() {
+    let reused = curve(Technique::Reused);
+    let floor = reused.floor.unwrap();
+    assert!(!Technique::Reused.is_unbiased() && floor.missing.abs() < 0.01, "{floor:?}");
+    assert!(floor.error < 0.03 && curve(Technique::Capped(1)).floor.unwrap().error > 0.1, "{floor:?}");
+    let last = |technique| curve(technique).points.last().unwrap().error;
+    assert!(last(Technique::Reused) < last(Technique::Mis));
+    let adaptive = &curve(Technique::Adaptive).points;
+    assert!(adaptive.len() >= 2 && adaptive.windows(2).all(|pair| pair[0].error > pair[1].error), "{adaptive:?}");
+}
+
 #[test]
 fn effects_have_shares_and_pictures_their_samples() {
     let share = |effect| *CORNELL.effects.iter().find(|share| share.effect == effect).unwrap();
@@ -153,8 +167,17 @@ fn only_what_the_scene_calls_for_is_studied() {
     }));
     sky.sky_radiance = Vec3::ONE;
     for (scene, techniques, sentence) in [
-        (bulb, [Technique::Mis, Technique::Light, Technique::Independent, Technique::Denoised].as_slice(), "no size"),
-        (sky, [Technique::Mis, Technique::Independent, Technique::Denoised].as_slice(), "a constant sky"),
+        (
+            bulb,
+            [Technique::Mis, Technique::Light, Technique::Independent, Technique::Adaptive, Technique::Denoised]
+                .as_slice(),
+            "no size",
+        ),
+        (
+            sky,
+            [Technique::Mis, Technique::Independent, Technique::Adaptive, Technique::Denoised].as_slice(),
+            "a constant sky",
+        ),
     ] {
         let study = run(&scene, 16);
         let studied: Vec<Technique> = study.curves.iter().map(|curve| curve.technique).collect();
@@ -171,7 +194,7 @@ fn a_study_in_a_second_has_all_parts() {
     let hear = |progress: &StudyProgress| told.borrow_mut().push(progress.clone());
     let effort = Effort::Time(Duration::from_secs(1));
     let study = study(&glb::load("cornell"), &settings(effort), &hear, &CancelToken::default()).unwrap();
-    assert_eq!(study.curves.len(), 10);
+    assert_eq!(study.curves.len(), 12);
     assert!(study.curves.iter().all(|curve| !curve.points.is_empty()));
     assert!(study.reference.paths >= 16 && study.reference.mean > 0.0);
     let told = told.into_inner();

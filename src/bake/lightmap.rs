@@ -6,6 +6,7 @@ use super::endless::refuse_endless_texels;
 use super::gather::Estimate;
 use super::layout::placements;
 use super::repair::{DisplayedRect, Field, Filtering, Repairs, Surroundings, TexelState, repair};
+use super::reuse::{FIRST_PATHS, Place};
 use super::sites::{Covered, Site, Sites};
 use super::survey::{Survey, Surveyed};
 use super::tiles::{ErrorTarget, Tile, Until, tiles};
@@ -104,6 +105,8 @@ pub fn bake_lightmap(
     let atlas = Atlas::new(&laid_out, &tracer, settings, cancel)?;
     let Sites { seen: sites, hidden, warnings: of_uv1 } = Sites::new(scene, &tracer, &atlas, settings, &workers)?;
     refuse_endless_texels(scene, &tracer, &settings.transport, &sites)?;
+    let first_pass =
+        Place { tracer: &tracer, atlas: &atlas, sites: &sites }.first_pass(FIRST_PATHS, settings, &workers)?;
     let tiles = tiles(&sites);
     let until = until(settings, &Surveyed { tiles: &tiles, sites: &sites, tracer: &tracer }, &workers, clock)?;
     let work = measure(&tiles, &sites, &tracer, until, &settings.transport, &workers)?;
@@ -125,7 +128,7 @@ pub fn bake_lightmap(
         denoised,
         seams,
         intervals: Intervals::of(&work.results, until),
-        ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings)
+        ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings).with(first_pass)
     };
     let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));
     let baked_lights = scene.lights.iter().filter(is_baked).map(|light| light.id().clone());

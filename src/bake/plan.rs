@@ -6,12 +6,13 @@ mod reasons;
 use super::atlas::Atlas;
 use super::endless::refuse_endless_texels;
 use super::lightmap::refuse_what_cannot_be_baked;
+use super::reuse::{FirstPass, Place};
 use super::sites::{Site, Sites};
 use super::survey::Surveyed;
 use super::tiles::tiles;
 use super::unwrap::LaidOut;
 use super::workers::Workers;
-use super::{BakeError, BakeSettings, BakeWarning, CancelToken};
+use super::{BakeError, BakeSettings, BakeWarning, CancelToken, REPLICATES};
 use crate::scene::Scene;
 use crate::trace::{Compiled, Effect, Tracer};
 use price::Pilot;
@@ -36,7 +37,7 @@ pub struct PlannedEffect {
 pub struct Prediction {
     /// The error of every texel, as [`Goal::Error`](super::Goal::Error) has it.
     pub error: f64,
-    /// Time that tracing to it would take [s].
+    /// Time that tracing to it would take, the first pass of the fast mode included [s].
     pub seconds: f64,
 }
 
@@ -82,6 +83,9 @@ impl BakePlan {
         warnings.extend(BakeWarning::of_transport(&settings.transport, &census));
         let pilot = Pilot::new(&sites, settings, &workers);
         let shares = pilot.cost_shares(scene, &tracer)?;
+        // As many paths as there are runs: enough to tell what paths cost that end on them.
+        let first_pass = Place { tracer: &tracer, atlas: &atlas, sites: &sites };
+        let first_pass = first_pass.first_pass(REPLICATES, settings, &workers)?;
         let tiles = tiles(&sites);
         let surveyed = Surveyed { tiles: &tiles, sites: &sites, tracer: &tracer };
         let survey = surveyed.survey(&settings.transport, &workers)?;
@@ -96,7 +100,7 @@ impl BakePlan {
             texels: sites.len() as u64,
             pages: atlas.pages.len() as u32,
             memory_bytes: memory_bytes(&tracer, &atlas, &sites),
-            predicted: survey.prices(),
+            predicted: survey.prices(first_pass.map_or(0.0, FirstPass::predicted_seconds)),
             warnings,
         })
     }

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// What a bake is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Compiling the scene for rays and laying out texels.
+    /// Compiling the scene for rays, laying out texels and, in the fast mode, its first pass.
     Prepare,
     /// Tracing. The long one.
     Gather,

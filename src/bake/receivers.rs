@@ -5,6 +5,7 @@ use super::atlas::Atlas;
 use super::endless::refuse_endless_texels;
 use super::gather::{REPLICATES, Start};
 use super::lightmap::refuse_what_cannot_be_baked;
+use super::reuse::{FIRST_PATHS, FirstPass, Place};
 use super::sites::{Site, Sites};
 use super::unwrap::LaidOut;
 use super::workers::Workers;
@@ -109,6 +110,7 @@ pub(crate) struct Receivers<'a> {
     /// How many there are in all.
     texels: u64,
     warnings: Vec<BakeWarning>,
+    first_pass: Option<FirstPass>,
     workers: Workers<'a>,
 }
 
@@ -137,11 +139,13 @@ impl<'a> Receivers<'a> {
         warnings.extend(laid_out.warnings.iter().chain(&atlas.warnings).cloned());
         warnings.extend(of_uv1);
         warnings.extend(BakeWarning::of_transport(&settings.transport, &census));
+        let first_pass = Place { tracer: &tracer, atlas: &atlas, sites: &seen };
+        let first_pass = first_pass.first_pass(FIRST_PATHS, settings, &workers)?;
         drop(atlas);
         let texels = seen.len() as u64;
         let scene = laid_out.scene.into_owned();
         let sites = spread(seen, count);
-        Ok(Self { scene, tracer, transport: settings.transport, census, sites, texels, warnings, workers })
+        Ok(Self { scene, tracer, transport: settings.transport, census, sites, texels, warnings, first_pass, workers })
     }
 
     /// How many texels are measured.
@@ -169,6 +173,11 @@ impl<'a> Receivers<'a> {
 
     pub(crate) fn census(&self) -> &Census {
         &self.census
+    }
+
+    /// What the first pass of the fast mode took for all texels; `None` where all bounces are traced.
+    pub(crate) fn first_pass(&self) -> Option<FirstPass> {
+        self.first_pass
     }
 
     pub(crate) fn warnings(&self) -> &[BakeWarning] {

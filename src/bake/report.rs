@@ -3,7 +3,7 @@
 use super::gather::{Estimate, clamped_share, relative_error};
 use super::tiles::{ErrorTarget, Until};
 use super::workers::Work;
-use super::{BakeWarning, DARK};
+use super::{BakeWarning, DARK, FirstPass};
 use crate::math::luminance;
 use crate::trace::{ForcedEffects, Transport};
 use std::time::Duration;
@@ -27,6 +27,8 @@ pub struct BakeReport {
     pub relative_stderr: RelativeError,
     /// How well texels are known, before repair.
     pub intervals: Intervals,
+    /// What the first pass of the fast mode did, which is a part of the sums above; `None` where all bounces were traced.
+    pub first_pass: Option<FirstPass>,
     /// What the denoiser did; `None` where it was off.
     pub denoised: Option<Denoised>,
     /// Absorbed over emitted flux; `None` for a scene from which light escapes, whose sky shines, or whose surfaces
@@ -152,6 +154,16 @@ impl Jump {
 }
 
 impl BakeReport {
+    /// With a first pass, which counts.
+    pub(super) fn with(mut self, first_pass: Option<FirstPass>) -> Self {
+        let FirstPass { samples, rays, cpu_seconds, .. } = first_pass.unwrap_or_default();
+        self.samples += samples;
+        self.rays += rays;
+        self.cpu_seconds += cpu_seconds;
+        self.first_pass = first_pass;
+        self
+    }
+
     /// The report of estimates that took `wall` time.
     pub(super) fn of(
         work: &Work<Estimate>,
@@ -168,6 +180,7 @@ impl BakeReport {
             wall_seconds: wall.as_secs_f64(),
             relative_stderr: relative_error(&work.results),
             intervals: Intervals::default(),
+            first_pass: None,
             denoised: None,
             energy_balance: None,
             clamped_light: clamped_share(&work.results, transport.clamp),

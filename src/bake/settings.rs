@@ -35,6 +35,20 @@ pub enum Denoise {
     BuiltIn,
 }
 
+/// How light is found that has met more than one surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LaterBounces {
+    /// Every path is followed to its end: no bias.
+    #[default]
+    Traced,
+    /// The fast mode: a first pass measures every texel by a few whole paths; those of the bake proper end where they
+    /// meet one, on the front of a diffuse surface, and take its light. Biased by what a texel is coarse and by the
+    /// first pass's noise: below 1 % as measured in `docs/accuracy.md`. Where a lightmap has no say (on glossy surfaces,
+    /// backs, near corners, what has no texels, and all paths that [`Transport::max_bounces`] cuts) paths go on.
+    Reused,
+}
+
 /// What a lightmap bake is asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BakeSettings {
@@ -42,6 +56,8 @@ pub struct BakeSettings {
     pub transport: Transport,
     /// When a texel has been sampled enough.
     pub goal: Goal,
+    /// How light is found that has met more than one surface.
+    pub later_bounces: LaterBounces,
     /// Texels per metre of surface where an object asks for nothing else; for [`Layout::Packed`].
     pub density: f32,
     /// Where the texels go.
@@ -60,6 +76,7 @@ impl Default for BakeSettings {
         Self {
             transport: Transport::default(),
             goal: Goal::default(),
+            later_bounces: LaterBounces::default(),
             density: 16.0,
             layout: Layout::default(),
             max_page_size: *PAGE_SIZES.end(),

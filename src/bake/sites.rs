@@ -78,7 +78,12 @@ impl Site {
 
     /// The runs of its estimate, before any path.
     pub(super) fn runs(&self, transport: &Transport) -> Runs {
-        Runs::new(self.covered.key, transport.clamp)
+        self.runs_with(self.covered.key, transport)
+    }
+
+    /// The same with other random numbers.
+    pub(super) fn runs_with(&self, key: u64, transport: &Transport) -> Runs {
+        Runs::new(key, transport.clamp)
     }
 
     /// Carries them on until there are so many paths; `None` if cancelled.

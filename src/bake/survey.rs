@@ -8,7 +8,7 @@
 use super::gather::Estimate;
 use super::plan::Prediction;
 use super::sites::Site;
-use super::tiles::{ErrorTarget, LEAST_PATHS, Looks, MOST_PATHS, Rounds, Tile};
+use super::tiles::{ErrorTarget, LEAST_PATHS, Looks, MOST_PATHS, Rounds, Tile, after};
 use super::workers::Workers;
 use super::{BakeError, CancelToken, DARK};
 use crate::math::Portable;
@@ -130,9 +130,10 @@ impl Survey {
         DARK * self.mean
     }
 
-    /// Prices of a few errors.
-    pub(super) fn prices(&self) -> Vec<Prediction> {
-        PRICED_ERRORS.into_iter().map(|error| Prediction { error, seconds: self.seconds(error) }).collect()
+    /// Prices of a few errors, with processor time [s] that all of them take besides.
+    pub(super) fn prices(&self, besides: f64) -> Vec<Prediction> {
+        let seconds = |error| self.seconds(error) + self.wall_per_cpu * besides;
+        PRICED_ERRORS.into_iter().map(|error| Prediction { error, seconds: seconds(error) }).collect()
     }
 
     /// Time that tracing to an error will take [s].
@@ -161,14 +162,18 @@ impl Survey {
     fn paths(&self, texel: &Texel, target: ErrorTarget) -> u32 {
         let wanted = target.relative * texel.value.max(target.floor);
         if let Some(round) = texel.half_widths.iter().position(|&width| width <= wanted) {
-            return paths_of(round);
+            // A round between two of the survey's may do.
+            let between = paths_of(round) / 4 * 3;
+            let before = texel.half_widths[round.saturating_sub(1)];
+            let width = before * Portable::powf(1.5, -self.exponent);
+            return if round > 0 && width <= wanted { between } else { paths_of(round) };
         }
         let last = texel.half_widths[ROUNDS - 1];
         let mut paths = paths_of(ROUNDS - 1);
         while paths < MOST_PATHS
             && last * Portable::powf(f64::from(paths_of(ROUNDS - 1)) / f64::from(paths), self.exponent) > wanted
         {
-            paths *= 2;
+            paths = after(paths);
         }
         paths
     }
@@ -193,7 +198,11 @@ mod tests {
             // Within the rounds, and far beyond them: the next round that is narrow enough.
             for error in [0.25, 0.1, 0.01] {
                 let needed = f64::from(LEAST_PATHS) * Portable::powf(0.3 / error, 1.0 / power);
-                let paths = f64::from((needed.ceil() as u32).next_power_of_two());
+                let mut paths = LEAST_PATHS;
+                while f64::from(paths) < needed {
+                    paths = after(paths);
+                }
+                let paths = f64::from(paths);
                 let seconds = survey.seconds(error);
                 assert!((seconds / (1000.0 * 1e-6 * paths) - 1.0).abs() < 1e-6, "{power} {error}: {seconds}");
             }

@@ -1,6 +1,6 @@
 //! Texels sampled tile by tile, each until it is known well enough.
 //!
-//! A tile is a square of texels of one object. Its texels are sampled in rounds, each of which doubles their paths; a
+//! A tile is a square of texels of one object. Its texels are sampled in rounds, two of which double their paths; a
 //! texel whose interval is narrow enough takes no part in the next. Nothing but a tile's own texels has a say in that,
 //! so threads and the order of tiles cannot matter, and no more runs are held than those of the tiles in work.
 //!
@@ -36,6 +36,12 @@ pub(super) const LEAST_PATHS: u32 = 64;
 
 /// The most paths that a texel gets.
 pub(super) const MOST_PATHS: u32 = 1 << 20;
+
+/// Paths of the round after the one of so many: half as many more, then a third, so that two rounds double them. A round
+/// that doubled them alone would leave a texel with 1.44 times the paths that it needs in the mean; these leave 1.2.
+pub(super) fn after(paths: u32) -> u32 {
+    if paths.is_power_of_two() { paths / 2 * 3 } else { paths / 3 * 4 }
+}
 
 /// How well texels are to be known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,7 +140,7 @@ impl Tile {
                     }
                     rounds.sample(paths, |place| is_open[place], cancel)?;
                     rounds.pool(Looks::Many);
-                    paths *= 2;
+                    paths = after(paths);
                 }
             }
         }

@@ -5,6 +5,7 @@ use cpu_time::ThreadTime;
 use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 /// The most items that one thread takes at a time: few enough to share out evenly, many enough to keep neighbours
@@ -100,6 +101,24 @@ impl<'a> Workers<'a> {
         let results: Option<Vec<T>> =
             self.pool.install(|| items.par_iter().map(|item| work(item, self.cancel)).collect());
         results.ok_or(BakeError::Cancelled)
+    }
+
+    /// The same as a part of what comes before the bake proper, with word of how far it is.
+    pub(super) fn prepare<I: Sync, T: Send>(
+        &self,
+        items: &[I],
+        work: impl Fn(&I, &CancelToken) -> Option<T> + Sync,
+    ) -> Result<Vec<T>, BakeError> {
+        let done = AtomicU64::new(0);
+        let total = items.len() as u64;
+        self.gather_quietly(items, |item, cancel| {
+            let result = work(item, cancel)?;
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            if done.is_multiple_of(LARGEST_CHUNK as u64) {
+                self.progress.report(Progress { stage: Stage::Prepare, done, total, relative_stderr: None });
+            }
+            Some(result)
+        })
     }
 
     fn tell<T>(

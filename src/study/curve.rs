@@ -99,10 +99,10 @@ impl Trail {
 
     fn floor(&self, truth: &Truth) -> Option<Floor> {
         let last = self.snapshots.last().filter(|last| last.variances.len() == last.means.len())?;
-        let is_cut = matches!(self.technique, Technique::Capped(_));
+        let has_floor = matches!(self.technique, Technique::Capped(_) | Technique::Reused);
         let mean = last.means.iter().sum::<f64>() / last.means.len().max(1) as f64;
         let floor = || Floor { error: truth.floor(&last.means, &last.variances), missing: 1.0 - mean / truth.mean() };
-        is_cut.then(floor)
+        has_floor.then(floor)
     }
 }
 

@@ -32,8 +32,9 @@ pub use strip::{PICTURE_SIZE, Strip, StudyPicture};
 pub use technique::Technique;
 pub use truth::Standing;
 
-use crate::bake::{BakeError, BakeSettings, BakeWarning, CancelToken, Layout, Receivers, thread_count};
+use crate::bake::{BakeError, BakeSettings, BakeWarning, CancelToken, LaterBounces, Layout, Receivers, thread_count};
 use crate::scene::Scene;
+use bakes::Studied;
 use budget::Budget;
 use std::time::Duration;
 
@@ -53,10 +54,13 @@ const TEXELS_PER_SECOND: f64 = 20.0;
 /// Fewest texels that a lightmap is made coarser for.
 const LEAST_TEXELS: f64 = 2000.0;
 
+/// Techniques whose curves are made of whole bakes.
+const WHOLE: [Technique; 2] = [Technique::Adaptive, Technique::Denoised];
+
 /// What a study is asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StudySettings {
-    /// The bake that is studied. Its goal, its estimator, its clamp and whether it denoises do not matter; its density is
+    /// The bake that is studied. Its goal, its estimator, its clamp, its mode and whether it denoises do not matter; its density is
     /// lowered where whole bakes would take too long.
     pub bake: BakeSettings,
     /// How much is done.
@@ -160,6 +164,7 @@ pub fn study(
 ) -> Result<Study, BakeError> {
     let mut left_out = Vec::new();
     let mut settings = settings.clone();
+    settings.bake.later_bounces = LaterBounces::Traced;
     if settings.bake.transport.clamp.take().is_some() {
         left_out.push("The clamp is left out: it takes light, and errors are measured with all of it.".into());
     }
@@ -170,7 +175,7 @@ pub fn study(
     let (techniques, sentences) = technique::called_for(&receivers, &settings);
     left_out.extend(sentences);
     let weights = techniques.iter().map(|technique| technique.weight()).sum::<f64>()
-        + Technique::Denoised.weight()
+        + WHOLE.iter().map(|technique| technique.weight()).sum::<f64>()
         + effects::WEIGHT
         + strip::WEIGHT
         + tracing::REFERENCE_WEIGHT;
@@ -178,9 +183,19 @@ pub fn study(
     let mut trails = Vec::new();
     for technique in techniques {
         let part = budget.part(technique.name(), technique.weight(), 1.0);
-        trails.push(tracing::trace(&receivers, technique, &settings, &part)?);
+        if technique == Technique::Reused {
+            // The same receivers with a tracer that knows the first pass.
+            let bake = BakeSettings { later_bounces: LaterBounces::Reused, ..settings.bake.clone() };
+            let reused = Receivers::new(scene, &bake, receivers.count(), cancel)?;
+            trails.push(tracing::trace(&reused, technique, &settings, &part)?);
+        } else {
+            trails.push(tracing::trace(&receivers, technique, &settings, &part)?);
+        }
     }
-    trails.push(bakes::bakes(scene, &receivers, &settings, &mut budget, cancel)?);
+    for technique in WHOLE {
+        let part = budget.part(bakes::name(technique), technique.weight(), 1.0);
+        trails.push(bakes::bakes(&Studied { scene, receivers: &receivers }, technique, &settings, &part, cancel)?);
+    }
     let (effects, sentences) = effects::shares(&receivers, &settings, &mut budget)?;
     left_out.extend(sentences);
     let (truth, reference) = tracing::reference(&receivers, &settings, &mut budget)?;

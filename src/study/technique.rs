@@ -28,6 +28,10 @@ pub enum Technique {
     Mis,
     /// The same, with paths that are cut after so many bounces.
     Capped(u32),
+    /// What a bake does in its fast mode: paths end on the texels of a first pass.
+    Reused,
+    /// What a bake does that is asked for an error: as many paths as each texel needs.
+    Adaptive,
     /// What a bake does, then denoised and repaired.
     Denoised,
 }
@@ -43,6 +47,8 @@ impl Technique {
             Self::Capped(0) => "direct light only".into(),
             Self::Capped(1) => "cut after 1 bounce".into(),
             Self::Capped(cap) => format!("cut after {cap} bounces"),
+            Self::Reused => "fast mode (kiln bake --fast)".into(),
+            Self::Adaptive => "adaptive (kiln bake --error)".into(),
             Self::Denoised => "MIS, Sobol, denoised".into(),
         }
     }
@@ -55,6 +61,8 @@ impl Technique {
             Self::Independent => "independent".into(),
             Self::Mis => "mis".into(),
             Self::Capped(cap) => format!("capped-{cap}"),
+            Self::Reused => "reused".into(),
+            Self::Adaptive => "adaptive".into(),
             Self::Denoised => "denoised".into(),
         }
     }
@@ -62,18 +70,18 @@ impl Technique {
     /// Whether its mean is the truth, so that more paths make it as good as one likes.
     pub fn is_unbiased(self) -> bool {
         match self {
-            Self::Naive | Self::Light | Self::Independent | Self::Mis => true,
-            Self::Capped(_) | Self::Denoised => false,
+            Self::Naive | Self::Light | Self::Independent | Self::Mis | Self::Adaptive => true,
+            Self::Capped(_) | Self::Reused | Self::Denoised => false,
         }
     }
 
     /// Its part of the time.
     pub(super) fn weight(self) -> f64 {
         match self {
-            Self::Naive | Self::Light | Self::Independent => 8.0,
+            Self::Naive | Self::Light | Self::Independent | Self::Reused => 8.0,
             Self::Mis => 10.0,
             Self::Capped(_) => 2.4,
-            Self::Denoised => 14.0,
+            Self::Denoised | Self::Adaptive => 14.0,
         }
     }
 
@@ -84,7 +92,7 @@ impl Technique {
             Self::Naive => (Transport { estimator: Estimator::Bsdf, ..transport }, Numbers::Sobol),
             Self::Light => (Transport { estimator: Estimator::Light, ..transport }, Numbers::Sobol),
             Self::Independent => (transport, Numbers::Independent),
-            Self::Mis | Self::Denoised => (transport, Numbers::Sobol),
+            Self::Mis | Self::Reused | Self::Adaptive | Self::Denoised => (transport, Numbers::Sobol),
             Self::Capped(cap) => (Transport { max_bounces: Some(cap), ..transport }, Numbers::Sobol),
         };
         Manner { transport, numbers }
@@ -113,6 +121,11 @@ pub(super) fn called_for(receivers: &Receivers<'_>, settings: &StudySettings) ->
     if effects.has(Effect::Interreflection) {
         let most = settings.bake.transport.max_bounces.unwrap_or(u32::MAX);
         techniques.extend(CAPS.into_iter().filter(|&cap| cap < most).map(Technique::Capped));
+        if settings.bake.transport.max_bounces.is_none() {
+            techniques.push(Technique::Reused);
+        } else {
+            left_out.push("The fast mode is left out: with a cap on bounces a bake has none.".into());
+        }
     } else {
         left_out.push("Caps on bounces are left out: no surface passes light on.".into());
     }

@@ -29,6 +29,7 @@ pub(super) fn trace(
 ) -> Result<Trail, BakeError> {
     let manner = technique.manner(settings);
     let of_all = receivers.texels() as f64 / receivers.count().max(1) as f64;
+    let first_pass = receivers.first_pass().map_or(0.0, |first| first.cpu_seconds);
     let state = std::cell::RefCell::new((receivers.sums(0), Duration::ZERO));
     let mut snapshots = Vec::new();
     part.double(
@@ -41,7 +42,7 @@ pub(super) fn trace(
             let (sums, cpu) = &*state.borrow();
             snapshots.push(Snapshot {
                 paths,
-                cpu_seconds: of_all * cpu.as_secs_f64(),
+                cpu_seconds: first_pass + of_all * cpu.as_secs_f64(),
                 means: sums.iter().map(Sums::mean).collect(),
                 variances: sums.iter().map(Sums::variance).collect(),
             });

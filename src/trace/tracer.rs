@@ -5,6 +5,7 @@ use super::attributes::Attributes;
 use super::bsdf::AlbedoTables;
 use super::effects::{Effect, EffectSet};
 use super::kernel::{LAYERED, PASSING, TEXTURED};
+use super::known::KnownLight;
 use super::light::Lights;
 use super::material::Surface;
 use super::shade::Place;
@@ -13,7 +14,7 @@ use super::texture::Decoded;
 use super::traced::TracedFromWorld;
 use super::transport::Transport;
 use glam::{DVec3, Vec3};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// No emitter.
 pub(super) const NOT_EMISSIVE: u32 = u32::MAX;
@@ -48,6 +49,8 @@ pub struct Tracer {
     pub(super) effects: EffectSet,
     /// The kernel that does it.
     pub(super) kernel: u32,
+    /// Light that paths need not look for.
+    pub(super) known: OnceLock<KnownLight>,
 }
 
 /// What a ray meets.
@@ -157,6 +160,7 @@ impl Tracer {
         // A triangle with the numbers of its surface and its emitter.
         let triangles = (self.triangles.len() * (size_of::<TriangleShape>() + 8)) as u64 + self.accel.memory_bytes();
         let textures: u64 = self.textures.iter().flatten().map(Decoded::memory_bytes).sum();
-        triangles + textures + self.attributes.memory_bytes()
+        let known = self.known.get().map_or(0, KnownLight::memory_bytes);
+        triangles + textures + self.attributes.memory_bytes() + known
     }
 }

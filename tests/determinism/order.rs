@@ -7,8 +7,8 @@ use crate::fingerprint::{Fingerprint, assert_same};
 use crate::vitrine::vitrine;
 use crate::{bake, common};
 use bevy_kiln::bake::{
-    BakeSettings, CancelToken, Goal, Layout, Lightmap, MeterPoint, MeterReading, MeterSettings, Progress,
-    bake_lightmap, measure_irradiance,
+    BakeError, BakeSettings, CancelToken, Goal, LaterBounces, Layout, Lightmap, MeterPoint, MeterReading,
+    MeterSettings, Progress, Stage, bake_lightmap, measure_irradiance,
 };
 use bevy_kiln::scene::Scene;
 use bevy_kiln::trace::Transport;
@@ -129,6 +129,37 @@ fn threads_that_sample_to_an_error() {
             assert!(a.samples == b.samples && a.rays == b.rays && a.half_width == b.half_width);
         }
     }
+}
+
+/// A bake whose paths end on the texels of its own first pass, and one that is stopped in it.
+#[test]
+fn threads_that_reuse_a_first_pass() {
+    let scene = glb::load("cornell");
+    let settings = |threads| BakeSettings {
+        goal: Goal::Samples(16),
+        later_bounces: LaterBounces::Reused,
+        density: 2.0,
+        threads: NonZeroUsize::new(threads),
+        ..BakeSettings::default()
+    };
+    let bake = |threads| bake_lightmap(&scene, &settings(threads), &(), &CancelToken::default()).unwrap();
+    let one = bake(1);
+    let first = one.report.first_pass.unwrap();
+    assert!(first.texels > one.report.texels / 2 && first.samples == 64 * one.report.texels, "{first:?}");
+    for threads in [2, 8] {
+        let other = bake(threads);
+        assert_same(&one, &other);
+        assert!(one.pages.iter().zip(&other.pages).all(|(a, b)| a.rays == b.rays && a.half_width == b.half_width));
+    }
+    let cancel = CancelToken::default();
+    let stop = |progress: Progress| {
+        if progress.stage == Stage::Prepare && progress.done > 0 {
+            cancel.cancel();
+        }
+        assert!(progress.stage == Stage::Prepare, "went on to {:?}", progress.stage);
+    };
+    let stopped = bake_lightmap(&scene, &settings(2), &stop, &cancel);
+    assert!(matches!(stopped, Err(BakeError::Cancelled)));
 }
 
 /// The texels of one object, without what its neighbours on the page add beside it.

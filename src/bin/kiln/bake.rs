@@ -87,6 +87,9 @@ fn summary(
             "half_width": error(&report.intervals.half_width),
             "missed": report.intervals.missed,
         },
+        "first_pass": report.first_pass.map(|first| {
+            json!({ "texels": first.texels, "samples": first.samples, "rays": first.rays, "cpu_seconds": first.cpu_seconds })
+        }),
         "denoised": report.denoised.map(|denoised| {
             json!({ "before": error(&denoised.before), "after": error(&denoised.after) })
         }),

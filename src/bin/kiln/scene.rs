@@ -60,6 +60,7 @@ pub(crate) fn bake_settings(scene: &SceneArgs, layout: &LayoutArgs, goal: &GoalA
     let settings = BakeSettings {
         transport: transport(scene),
         goal: goal.goal(),
+        later_bounces: goal.later_bounces(),
         density: layout.density,
         layout: layout_kind,
         max_page_size: layout.page_size,

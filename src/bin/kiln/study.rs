@@ -13,7 +13,7 @@ use std::io::IsTerminal;
 
 pub(crate) fn run(args: &StudyArgs, cancel: &CancelToken) -> Result<(), Failure> {
     // No goal is asked for: a study goes as far as there is time.
-    let goal = GoalArgs { error: None, time: None, spp: None };
+    let goal = GoalArgs { error: None, time: None, spp: None, fast: false };
     let bake = scene::bake_settings(&args.scene, &args.layout, &goal)?;
     let settings = StudySettings { bake, effort: Effort::Time(args.time) };
     // Twenty minutes must not end at a name that is taken.

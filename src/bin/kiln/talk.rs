@@ -104,6 +104,13 @@ impl Talk {
             "  {} {pages}, {fill:.0} % of them texels; {} objects unwrapped, {} texels hidden",
             report.pages, report.unwrapped, report.hidden
         ));
+        if let Some(first) = report.first_pass {
+            self.say(format_args!(
+                "  fast mode: paths end on {} texels of a first pass, which took {} of processor time",
+                first.texels,
+                duration(first.cpu_seconds)
+            ));
+        }
         if let Some(denoised) = report.denoised {
             let [before, after] = [denoised.before, denoised.after].map(|error| 100.0 * error.mean);
             self.say(format_args!("  denoised: estimated error {before:.2} % before, {after:.2} % after (mean)"));

@@ -154,6 +154,8 @@ fn look(technique: Technique) -> (RGBColor, f64, Mark) {
     match technique {
         Technique::Mis => (RGBColor(0, 96, 160), 3.2, Mark::Disc),
         Technique::Denoised => (RGBColor(0, 122, 92), 2.4, Mark::Diamond),
+        Technique::Reused => (RGBColor(90, 90, 90), 2.4, Mark::Triangle),
+        Technique::Adaptive => (RGBColor(0, 0, 0), 2.0, Mark::Square),
         Technique::Independent => (RGBColor(150, 70, 120), 2.0, Mark::Wedge),
         // Broad, since what a bake does often lies on top.
         Technique::Light => (RGBColor(150, 104, 0), 6.0, Mark::Square),

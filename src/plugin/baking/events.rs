@@ -3,7 +3,7 @@
 
 use super::extract::extract_scene;
 use super::settings::SceneSettings;
-use crate::bake::{BakeError, BakePlan, BakeSettings, Denoise, Goal, Layout, Lightmap, Progress, Stage};
+use crate::bake::{BakeError, BakePlan, BakeSettings, Denoise, Goal, LaterBounces, Layout, Lightmap, Progress, Stage};
 use crate::trace::{Estimator, ForcedEffects, Sharing, Transport};
 use bevy::prelude::*;
 use std::num::NonZeroUsize;
@@ -73,6 +73,9 @@ pub struct BakeLightmaps {
     pub scene: SceneSettings,
     /// When a texel has been sampled enough.
     pub goal: BakeGoal,
+    /// How light is found that has met more than one surface: the fast mode is off by default.
+    #[reflect(ignore)]
+    pub later_bounces: LaterBounces,
     /// Texels per metre of surface where an object asks for nothing else.
     pub density: f32,
     /// Where the texels go.
@@ -106,6 +109,7 @@ impl Default for BakeLightmaps {
         Self {
             scene: SceneSettings::default(),
             goal: BakeGoal::default(),
+            later_bounces: core.later_bounces,
             density: core.density,
             layout: LightmapLayout::default(),
             max_page_size: core.max_page_size,
@@ -144,6 +148,7 @@ impl BakeLightmaps {
                 effects: self.effects,
             },
             goal: self.goal.into(),
+            later_bounces: self.later_bounces,
             density: self.density,
             layout: match self.layout {
                 LightmapLayout::Packed => Layout::Packed,

@@ -16,7 +16,7 @@ use crate::trace::texture::Decoded;
 use crate::trace::traced::TracedFromWorld;
 use crate::trace::tracer::{NO_TRIANGLE, NOT_EMISSIVE, Receiver, Tracer};
 use glam::{Vec2, Vec3};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Points at which the texture of a glowing triangle is looked up for its brightness.
 const GLOW_POINTS: u64 = 64;
@@ -66,6 +66,7 @@ impl World {
             receivers: Vec::new(),
             effects,
             kernel,
+            known: OnceLock::new(),
         };
         Self { view, tracer, sources: Sources::default(), shapes: 0 }
     }

@@ -18,6 +18,7 @@
 
 use super::Tally;
 use super::start::PathStart;
+use super::vertex::Vertex;
 use crate::trace::tracer::Tracer;
 use glam::Vec3;
 
@@ -90,6 +91,12 @@ impl Tracer {
             Whence::Surface { point, .. } => !self.accel.is_blocked(start.origin, point),
             Whence::Sky(direction) => !self.accel.is_blocked_towards(start.origin, direction),
         }
+    }
+}
+
+impl From<&Vertex<'_>> for Whence {
+    fn from(vertex: &Vertex<'_>) -> Self {
+        Self::Surface { point: vertex.origin, normal: vertex.geometric_normal }
     }
 }
 

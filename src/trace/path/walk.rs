@@ -38,6 +38,8 @@ const MAX_PASSING: f32 = 0.999;
 /// Where a ray comes to.
 enum Arrival<'t> {
     At(Vertex<'t>),
+    /// A place of which it is known what it shows, and what that adds to the path [cd/m²].
+    Known(Vertex<'t>, Vec3),
     /// Out of the scene; what shines there is still to be added.
     Outside,
     /// The path is at its end.
@@ -104,11 +106,13 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         let Some(ray) = self.leave(&Self::receiver(start)) else { return Found::alone(self.radiance) };
         match self.arrive(&ray) {
             Arrival::At(vertex) => {
-                let alone = std::mem::take(&mut self.radiance);
-                let whence = Whence::Surface { point: vertex.origin, normal: vertex.geometric_normal };
+                let (alone, whence) = (std::mem::take(&mut self.radiance), Whence::from(&vertex));
                 self.number += 1;
                 self.go_on(vertex);
                 Found { alone, shared: Some(Shared { whence, radiance: self.radiance }) }
+            }
+            Arrival::Known(vertex, radiance) => {
+                Found { alone: self.radiance, shared: Some(Shared { whence: Whence::from(&vertex), radiance }) }
             }
             Arrival::Outside => {
                 self.meet_distant(&ray);
@@ -139,6 +143,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
     pub(super) fn look_along(mut self, ray: Ray) -> Vec3 {
         match self.arrive(&ray) {
             Arrival::At(vertex) => self.go_on(vertex),
+            Arrival::Known(_, light) => self.radiance += light,
             Arrival::Outside => self.escape(&ray),
             Arrival::Ended => {}
         }
@@ -149,6 +154,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         while let Some(ray) = self.leave(&vertex) {
             match self.arrive(&ray) {
                 Arrival::At(next) => vertex = next,
+                Arrival::Known(_, light) => return self.radiance += light,
                 Arrival::Outside => return self.escape(&ray),
                 Arrival::Ended => return,
             }
@@ -266,6 +272,9 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             return Arrival::Ended;
         }
         if let Some(u_survive) = ray.survival {
+            if let Some(known) = tracer.known_light::<K>(hit, ray.direction, passed + hit.t) {
+                return Arrival::Known(vertex, self.throughput * albedo * known);
+            }
             let survival = survival_probability(carried);
             if u_survive >= survival {
                 return Arrival::Ended;
