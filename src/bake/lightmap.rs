@@ -107,7 +107,7 @@ pub fn bake_lightmap(
     refuse_endless_texels(scene, &tracer, &settings.transport, &sites)?;
     let first_pass =
         Place { tracer: &tracer, atlas: &atlas, sites: &sites }.first_pass(FIRST_PATHS, settings, &workers)?;
-    let tiles = tiles(&sites);
+    let tiles = tiles(&sites, tracer.sharing(&settings.transport));
     let until = until(settings, &Surveyed { tiles: &tiles, sites: &sites, tracer: &tracer }, &workers, clock)?;
     let work = measure(&tiles, &sites, &tracer, until, &settings.transport, &workers)?;
     let balance = energy_balance(&tracer, &sites, &work.results, &settings.transport, &workers)?;

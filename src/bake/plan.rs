@@ -86,7 +86,7 @@ impl BakePlan {
         // As many paths as there are runs: enough to tell what paths cost that end on them.
         let first_pass = Place { tracer: &tracer, atlas: &atlas, sites: &sites };
         let first_pass = first_pass.first_pass(REPLICATES, settings, &workers)?;
-        let tiles = tiles(&sites);
+        let tiles = tiles(&sites, tracer.sharing(&settings.transport));
         let surveyed = Surveyed { tiles: &tiles, sites: &sites, tracer: &tracer };
         let survey = surveyed.survey(&settings.transport, &workers)?;
         let plan_effect = |effect| PlannedEffect {

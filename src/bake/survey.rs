@@ -5,7 +5,6 @@
 //! the last round are carried on as a power of the paths, whose exponent is that of the rounds before, since Sobol's
 //! points beat the root of the number by as much as the light is smooth. Nothing but times depends on the clock.
 
-use super::gather::Estimate;
 use super::plan::Prediction;
 use super::sites::Site;
 use super::tiles::{ErrorTarget, LEAST_PATHS, Looks, MOST_PATHS, Rounds, Tile, after};
@@ -47,7 +46,8 @@ pub(super) struct Surveyed<'a> {
 /// What was learnt.
 #[derive(Clone, Debug)]
 pub(super) struct Survey {
-    texels: Vec<Texel>,
+    /// By groups, the texels of each having the same number of paths.
+    groups: Vec<Vec<Texel>>,
     /// How many texels of the bake each stands for.
     stands_for: f64,
     /// Time that passes for a second of processor time: less than one where there are several threads.
@@ -87,7 +87,7 @@ impl Surveyed<'_> {
         Ok(Survey::new(of_tiles.into_iter().flatten().collect(), self.sites.len(), wall))
     }
 
-    fn of_tile(&self, tile: &Tile, transport: &Transport, cancel: &CancelToken) -> Option<Vec<Texel>> {
+    fn of_tile(&self, tile: &Tile, transport: &Transport, cancel: &CancelToken) -> Option<Vec<Vec<Texel>>> {
         let clock = ThreadTime::now();
         let mut rounds = Rounds::new(tile, self.sites, self.tracer, transport);
         let mut half_widths = vec![[0.0; ROUNDS]; tile.sites.len()];
@@ -99,17 +99,18 @@ impl Surveyed<'_> {
         }
         let paths: u64 = rounds.estimates.iter().map(|estimate| estimate.samples).sum();
         let seconds_per_path = clock.elapsed().as_secs_f64() / paths.max(1) as f64;
-        let texel = |(estimate, half_widths): (&Estimate, [f64; ROUNDS])| Texel {
-            value: estimate.level,
-            half_widths,
+        let texel = |place: usize| Texel {
+            value: rounds.estimates[place].level,
+            half_widths: half_widths[place],
             seconds_per_path,
         };
-        Some(rounds.estimates.iter().zip(half_widths).map(texel).collect())
+        Some(tile.groups().map(|group| group.map(texel).collect()).collect())
     }
 }
 
 impl Survey {
-    fn new(texels: Vec<Texel>, total: usize, wall: f64) -> Self {
+    fn new(groups: Vec<Vec<Texel>>, total: usize, wall: f64) -> Self {
+        let texels: Vec<Texel> = groups.iter().flatten().copied().collect();
         let count = texels.len().max(1) as f64;
         let squares = |round: usize| texels.iter().map(|texel| texel.half_widths[round].powi(2)).sum::<f64>();
         let ratio = squares(0) / squares(ROUNDS - 1);
@@ -121,7 +122,7 @@ impl Survey {
             wall_per_cpu: if cpu > 0.0 { wall / cpu } else { 1.0 },
             exponent: exponent.clamp(EXPONENTS[0], EXPONENTS[1]),
             mean: texels.iter().map(|texel| texel.value).sum::<f64>() / count,
-            texels,
+            groups,
         }
     }
 
@@ -139,8 +140,11 @@ impl Survey {
     /// Time that tracing to an error will take [s].
     pub(super) fn seconds(&self, relative: f64) -> f64 {
         let target = ErrorTarget { relative, floor: self.floor() };
-        let seconds = |texel: &Texel| f64::from(self.paths(texel, target)) * texel.seconds_per_path;
-        self.wall_per_cpu * self.stands_for * self.texels.iter().map(seconds).sum::<f64>()
+        let seconds = |group: &Vec<Texel>| {
+            let paths = group.iter().map(|texel| self.paths(texel, target)).max().unwrap_or(0);
+            f64::from(paths) * group.iter().map(|texel| texel.seconds_per_path).sum::<f64>()
+        };
+        self.wall_per_cpu * self.stands_for * self.groups.iter().map(seconds).sum::<f64>()
     }
 
     /// The smallest error that takes no more than a time [s], rounded up.
@@ -187,7 +191,7 @@ mod tests {
     fn survey(width: f64, power: f64) -> Survey {
         let half_widths = std::array::from_fn(|round| width * Portable::powf(f64::from(1_u32 << round), -power));
         let texel = Texel { value: 1.0, half_widths, seconds_per_path: 1e-6 };
-        Survey::new(vec![texel; 10], 1000, 10.0 * 1e-6 * f64::from(paths_of(ROUNDS - 1)))
+        Survey::new(vec![vec![texel]; 10], 1000, 10.0 * 1e-6 * f64::from(paths_of(ROUNDS - 1)))
     }
 
     #[test]

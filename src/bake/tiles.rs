@@ -2,7 +2,9 @@
 //!
 //! A tile is a square of texels of one object. Its texels are sampled in rounds, two of which double their paths; a
 //! texel whose interval is narrow enough takes no part in the next. Nothing but a tile's own texels has a say in that,
-//! so threads and the order of tiles cannot matter, and no more runs are held than those of the tiles in work.
+//! so threads and the order of tiles cannot matter, and no more runs are held than those of the tiles in work. Texels that
+//! share their paths (`together`) go on until the last of them is done: what it takes to know that one is a number of
+//! paths, whoever's they are, and the others gain by it.
 //!
 //! The interval of a texel goes by the spread of its runs. By chance a spread comes out too small: where a path in
 //! thousands brings all the light, most runs agree that there is none. And who looks after each round and stops at the
@@ -25,7 +27,7 @@ use super::CancelToken;
 use super::gather::{Estimate, Runs};
 use super::sites::Site;
 use crate::math::luminance;
-use crate::trace::{Tracer, Transport};
+use crate::trace::{Sharing, Tracer, Transport};
 use std::collections::BTreeMap;
 
 /// Side of a tile [texels].
@@ -80,25 +82,25 @@ pub(super) struct Tile {
     pub(super) sites: Vec<u32>,
     /// Of each, the places in the tile of those around it in its chart.
     around: Vec<Vec<u16>>,
-    /// Places in the tile of those that trace together.
+    /// Places in the tile, in their order, of those that trace together.
     groups: Vec<Vec<u16>>,
 }
 
 /// All tiles, in an order of chance: of any first part of it the rest can be told.
-pub(super) fn tiles(sites: &[Site]) -> Vec<Tile> {
+pub(super) fn tiles(sites: &[Site], sharing: Sharing) -> Vec<Tile> {
     let mut by_place: BTreeMap<[u32; 4], Vec<u32>> = BTreeMap::new();
     for (number, Site { covered, .. }) in sites.iter().enumerate() {
         let [x, y] = covered.place.map(|along| along / SIDE);
         by_place.entry([covered.page, covered.receiver, y, x]).or_default().push(number as u32);
     }
-    let mut tiles: Vec<Tile> = by_place.into_values().map(|of_tile| Tile::new(of_tile, sites)).collect();
+    let mut tiles: Vec<Tile> = by_place.into_values().map(|of_tile| Tile::new(of_tile, sites, sharing)).collect();
     // Keys of texels are hashes.
     tiles.sort_by_key(|tile| sites[tile.sites[0] as usize].covered.key);
     tiles
 }
 
 impl Tile {
-    fn new(of_tile: Vec<u32>, sites: &[Site]) -> Self {
+    fn new(of_tile: Vec<u32>, sites: &[Site], sharing: Sharing) -> Self {
         let covered = |number: u32| &sites[number as usize].covered;
         let is_beside = |a: u32, b: u32| {
             let [a, b] = [a, b].map(covered);
@@ -108,8 +110,13 @@ impl Tile {
             let others = of_tile.iter().enumerate().filter(|&(_, &other)| other != one && is_beside(one, other));
             others.map(|(place, _)| place as u16).collect()
         };
-        let groups = groups(of_tile.iter().map(|&number| covered(number).place));
+        let groups = groups(of_tile.iter().map(|&number| covered(number).place), sharing);
         Self { around: of_tile.iter().map(of_one).collect(), sites: of_tile, groups }
+    }
+
+    /// Groups of those that trace together, by their places in the tile.
+    pub(super) fn groups(&self) -> impl Iterator<Item = impl Iterator<Item = usize> + '_> {
+        self.groups.iter().map(|group| group.iter().map(|&place| place.into()))
     }
 
     /// Measures its texels, in their order; `None` if cancelled.
@@ -164,7 +171,7 @@ impl<'a> Rounds<'a> {
         Self { tile, sites, tracer, transport, runs, estimates: vec![Estimate::default(); tile.sites.len()] }
     }
 
-    /// Carries on those that take part until they have so many paths; `None` if cancelled.
+    /// Carries on those that take part, each with all of its group, until they have so many paths; `None` if cancelled.
     pub(super) fn sample(
         &mut self,
         paths: u32,
@@ -172,16 +179,19 @@ impl<'a> Rounds<'a> {
         cancel: &CancelToken,
     ) -> Option<()> {
         for group in &self.tile.groups {
-            let mut is_in = vec![false; self.runs.len()];
-            for place in group.iter().map(|&place| usize::from(place)) {
-                is_in[place] = takes_part(place);
+            if !group.iter().any(|&place| takes_part(place.into())) {
+                continue;
             }
-            let sites = self.tile.sites.iter().map(|&site| &self.sites[site as usize]);
-            let all = sites.zip(&mut self.runs).zip(&is_in);
-            let mut open: Vec<(&Site, &mut Runs)> = all.filter(|(_, is_in)| **is_in).map(|(texel, _)| texel).collect();
-            carry_on(&mut open, paths, (self.tracer, self.transport), cancel)?;
-            for place in (0..is_in.len()).filter(|&place| is_in[place]) {
-                self.estimates[place] = self.runs[place].estimate();
+            let sites = &self.tile.sites;
+            let mut rest = self.runs.iter_mut().zip(sites).enumerate();
+            let mut members = Vec::with_capacity(group.len());
+            for &place in group {
+                let (_, (runs, &site)) = rest.find(|(number, _)| *number == usize::from(place))?;
+                members.push((&self.sites[site as usize], runs));
+            }
+            carry_on(&mut members, paths, (self.tracer, self.transport), cancel)?;
+            for &place in group {
+                self.estimates[usize::from(place)] = self.runs[usize::from(place)].estimate();
             }
         }
         Some(())

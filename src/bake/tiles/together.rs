@@ -7,7 +7,7 @@
 use crate::bake::CancelToken;
 use crate::bake::gather::{REPLICATES, Runs};
 use crate::bake::sites::Site;
-use crate::trace::{MOST_RECEIVERS, Tracer, Transport};
+use crate::trace::{MOST_RECEIVERS, Sharing, Tracer, Transport};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
@@ -18,7 +18,10 @@ pub(super) const STRIDE: u32 = 4;
 const CANCEL_INTERVAL: u64 = 8;
 
 /// Groups of texels, by their numbers in a list of places.
-pub(super) fn groups(places: impl Iterator<Item = [u32; 2]>) -> Vec<Vec<u16>> {
+pub(super) fn groups(places: impl Iterator<Item = [u32; 2]>, sharing: Sharing) -> Vec<Vec<u16>> {
+    if sharing == Sharing::Alone {
+        return (0..places.count() as u16).map(|number| vec![number]).collect();
+    }
     let mut by_rest: BTreeMap<[u32; 2], Vec<u16>> = BTreeMap::new();
     for (number, place) in places.enumerate() {
         by_rest.entry(place.map(|along| along % STRIDE)).or_default().push(number as u16);

@@ -20,6 +20,7 @@ use super::Tally;
 use super::start::PathStart;
 use super::vertex::Vertex;
 use crate::trace::tracer::Tracer;
+use crate::trace::transport::{Sharing, Transport};
 use glam::Vec3;
 
 /// The most receivers that share their paths.
@@ -58,6 +59,11 @@ impl Found {
 }
 
 impl Tracer {
+    /// Whom paths serve that start in this scene.
+    pub(crate) fn sharing(&self, transport: &Transport) -> Sharing {
+        if self.is_diffuse() { transport.sharing } else { Sharing::Alone }
+    }
+
     /// Deals out what the path of receiver `own` found: adds the light of each receiver of its group [cd/m²], of which
     /// there are [`MOST_RECEIVERS`] at most.
     pub(crate) fn share(&self, starts: &[PathStart], own: usize, found: &Found, light: &mut [Vec3], tally: &mut Tally) {
