@@ -23,7 +23,7 @@ pub struct Held {
 pub const HELD: [Held; 3] = [
     Held {
         name: "cornell",
-        hash: 0x74d9_1390_f889_72a5,
+        hash: 0x75ed_655a_da79_cd52,
         scene: || glb::load("cornell"),
         density: 1.0,
         layout: Layout::Shared { size: 32 },
