@@ -54,11 +54,11 @@ impl Runs {
         cancel: &CancelToken,
         mut path: impl FnMut(&Sobol, Start, &mut Tally) -> Option<Vec3>,
     ) -> Option<()> {
-        let per_run = u64::from(count.div_ceil(REPLICATES));
+        let per_run = Self::per_run(count);
         for number in 0..REPLICATES {
             let mut accepted = self.accepted;
             while accepted < per_run {
-                if self.runs[number as usize].index % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {
+                if self.runs[number as usize].index.is_multiple_of(CANCEL_INTERVAL) && cancel.is_cancelled() {
                     return None;
                 }
                 let (numbers, start) = self.next(number, per_run);
@@ -69,6 +69,11 @@ impl Runs {
         }
         self.are(per_run);
         Some(())
+    }
+
+    /// Paths of each run where there are to be at least `count` in all.
+    pub(in crate::bake) fn per_run(count: u32) -> u64 {
+        u64::from(count.div_ceil(REPLICATES))
     }
 
     /// The next start of a run that is not refused, and its path's numbers. At the end the path's value is to be added.

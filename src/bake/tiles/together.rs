@@ -38,11 +38,11 @@ pub(super) fn carry_on(
     cancel: &CancelToken,
 ) -> Option<()> {
     let Some((_, first)) = group.first() else { return Some(()) };
-    let (before, per_run) = (first.paths_per_run(), paths.div_ceil(REPLICATES).into());
+    let (before, per_run) = (first.paths_per_run(), Runs::per_run(paths));
     let (mut starts, mut found) = (Vec::with_capacity(group.len()), Vec::with_capacity(group.len()));
     for run in 0..REPLICATES {
         for step in before..per_run {
-            if step % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {
+            if step.is_multiple_of(CANCEL_INTERVAL) && cancel.is_cancelled() {
                 return None;
             }
             starts.clear();

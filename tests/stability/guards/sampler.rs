@@ -89,8 +89,8 @@ pub static KEY_OF_REPLICATE: Guard = Guard {
            1997)",
     edits: &[Edit {
         file: "src/bake/gather/runs.rs",
-        text: "let key = combine(self.key, number as u64);",
-        instead: "let key = combine(self.key, (number / 8) as u64);",
+        text: "let numbers = Sobol::new(combine(self.key, number.into()), run.index);",
+        instead: "let numbers = Sobol::new(combine(self.key, (number / 8).into()), run.index);",
     }],
 };
 
@@ -109,7 +109,7 @@ pub static CANCEL: Guard = Guard {
     does: "an estimate that would take hours ends when it is asked to",
     edits: &[Edit {
         file: "src/bake/gather/runs.rs",
-        text: "if run.index % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {",
-        instead: "if run.index == u64::MAX.wrapping_add(CANCEL_INTERVAL) && cancel.is_cancelled() {",
+        text: "if self.runs[number as usize].index.is_multiple_of(CANCEL_INTERVAL) && cancel.is_cancelled() {",
+        instead: "if CANCEL_INTERVAL == 0 && cancel.is_cancelled() {",
     }],
 };
