@@ -175,7 +175,8 @@ fn only_what_the_scene_calls_for_is_studied() {
         ),
         (
             sky,
-            [Technique::Mis, Technique::Independent, Technique::Adaptive, Technique::Denoised].as_slice(),
+            [Technique::Mis, Technique::Independent, Technique::Shared, Technique::Adaptive, Technique::Denoised]
+                .as_slice(),
             "a constant sky",
         ),
     ] {
@@ -194,7 +195,7 @@ fn a_study_in_a_second_has_all_parts() {
     let hear = |progress: &StudyProgress| told.borrow_mut().push(progress.clone());
     let effort = Effort::Time(Duration::from_secs(1));
     let study = study(&glb::load("cornell"), &settings(effort), &hear, &CancelToken::default()).unwrap();
-    assert_eq!(study.curves.len(), 12);
+    assert_eq!(study.curves.len(), 13);
     assert!(study.curves.iter().all(|curve| !curve.points.is_empty()));
     assert!(study.reference.paths >= 16 && study.reference.mean > 0.0);
     let told = told.into_inner();

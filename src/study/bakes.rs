@@ -29,7 +29,11 @@ pub(super) struct Studied<'a> {
 
 /// What a person is told.
 pub(super) fn name(technique: Technique) -> &'static str {
-    if technique == Technique::Denoised { "denoised bakes" } else { "bakes to an error" }
+    match technique {
+        Technique::Denoised => "denoised bakes",
+        Technique::Shared => "bakes of shared paths",
+        _ => "bakes to an error",
+    }
 }
 
 /// Bakes with more and more paths as long as there is time for the next.
@@ -48,6 +52,9 @@ pub(super) fn bakes(
         let bake = match (technique, errors.next()) {
             (Technique::Denoised, _) => {
                 BakeSettings { goal: Goal::Samples(paths), denoise: Denoise::BuiltIn, ..settings.bake.clone() }
+            }
+            (Technique::Shared, _) => {
+                BakeSettings { goal: Goal::Samples(paths), denoise: Denoise::Off, ..settings.bake.clone() }
             }
             (_, Some(error)) => {
                 BakeSettings { goal: Goal::Error(error), denoise: Denoise::Off, ..settings.bake.clone() }

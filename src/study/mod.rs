@@ -34,6 +34,7 @@ pub use truth::Standing;
 
 use crate::bake::{BakeError, BakeSettings, BakeWarning, CancelToken, LaterBounces, Layout, Receivers, thread_count};
 use crate::scene::Scene;
+use crate::trace::Sharing;
 use bakes::Studied;
 use budget::Budget;
 use std::time::Duration;
@@ -55,7 +56,7 @@ const TEXELS_PER_SECOND: f64 = 20.0;
 const LEAST_TEXELS: f64 = 2000.0;
 
 /// Techniques whose curves are made of whole bakes.
-const WHOLE: [Technique; 2] = [Technique::Adaptive, Technique::Denoised];
+const WHOLE: [Technique; 3] = [Technique::Shared, Technique::Adaptive, Technique::Denoised];
 
 /// What a study is asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -192,7 +193,8 @@ pub fn study(
             trails.push(tracing::trace(&receivers, technique, &settings, &part)?);
         }
     }
-    for technique in WHOLE {
+    let is_shared = receivers.tracer().sharing(&settings.bake.transport) == Sharing::Group;
+    for technique in WHOLE.into_iter().filter(|&technique| is_shared || technique != Technique::Shared) {
         let part = budget.part(bakes::name(technique), technique.weight(), 1.0);
         trails.push(bakes::bakes(&Studied { scene, receivers: &receivers }, technique, &settings, &part, cancel)?);
     }

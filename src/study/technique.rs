@@ -24,11 +24,13 @@ pub enum Technique {
     Light,
     /// Both, by multiple importance sampling, with numbers that are independent: plain Monte Carlo. Roulette.
     Independent,
-    /// Both, with Sobol points and roulette: what a bake does.
+    /// Both, with Sobol points and roulette, each texel for itself.
     Mis,
     /// The same, with paths that are cut after so many bounces.
     Capped(u32),
-    /// What a bake does in its fast mode: paths end on the texels of a first pass.
+    /// The same, with paths that serve a group of texels: a bake of so many paths.
+    Shared,
+    /// Each texel for itself in the fast mode: paths end on the texels of a first pass.
     Reused,
     /// What a bake does that is asked for an error: as many paths as each texel needs.
     Adaptive,
@@ -43,11 +45,12 @@ impl Technique {
             Self::Naive => "naive path tracing".into(),
             Self::Light => "light sampling".into(),
             Self::Independent => "MIS, independent numbers".into(),
-            Self::Mis => "MIS, Sobol (kiln bake)".into(),
+            Self::Mis => "MIS, Sobol".into(),
             Self::Capped(0) => "direct light only".into(),
             Self::Capped(1) => "cut after 1 bounce".into(),
             Self::Capped(cap) => format!("cut after {cap} bounces"),
-            Self::Reused => "fast mode (kiln bake --fast)".into(),
+            Self::Shared => "shared paths (kiln bake --spp)".into(),
+            Self::Reused => "fast mode".into(),
             Self::Adaptive => "adaptive (kiln bake --error)".into(),
             Self::Denoised => "MIS, Sobol, denoised".into(),
         }
@@ -61,6 +64,7 @@ impl Technique {
             Self::Independent => "independent".into(),
             Self::Mis => "mis".into(),
             Self::Capped(cap) => format!("capped-{cap}"),
+            Self::Shared => "shared".into(),
             Self::Reused => "reused".into(),
             Self::Adaptive => "adaptive".into(),
             Self::Denoised => "denoised".into(),
@@ -70,7 +74,7 @@ impl Technique {
     /// Whether its mean is the truth, so that more paths make it as good as one likes.
     pub fn is_unbiased(self) -> bool {
         match self {
-            Self::Naive | Self::Light | Self::Independent | Self::Mis | Self::Adaptive => true,
+            Self::Naive | Self::Light | Self::Independent | Self::Mis | Self::Shared | Self::Adaptive => true,
             Self::Capped(_) | Self::Reused | Self::Denoised => false,
         }
     }
@@ -81,7 +85,7 @@ impl Technique {
             Self::Naive | Self::Light | Self::Independent | Self::Reused => 8.0,
             Self::Mis => 10.0,
             Self::Capped(_) => 2.4,
-            Self::Denoised | Self::Adaptive => 14.0,
+            Self::Shared | Self::Denoised | Self::Adaptive => 14.0,
         }
     }
 
@@ -92,7 +96,7 @@ impl Technique {
             Self::Naive => (Transport { estimator: Estimator::Bsdf, ..transport }, Numbers::Sobol),
             Self::Light => (Transport { estimator: Estimator::Light, ..transport }, Numbers::Sobol),
             Self::Independent => (transport, Numbers::Independent),
-            Self::Mis | Self::Reused | Self::Adaptive | Self::Denoised => (transport, Numbers::Sobol),
+            Self::Mis | Self::Shared | Self::Reused | Self::Adaptive | Self::Denoised => (transport, Numbers::Sobol),
             Self::Capped(cap) => (Transport { max_bounces: Some(cap), ..transport }, Numbers::Sobol),
         };
         Manner { transport, numbers }

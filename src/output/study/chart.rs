@@ -65,7 +65,7 @@ impl Subject {
 
     fn label(self, technique: Technique) -> String {
         match (self, technique) {
-            (Self::Bounces, Technique::Mis) => "roulette (kiln bake)".into(),
+            (Self::Bounces, Technique::Mis) => "roulette, no cap".into(),
             _ => technique.name(),
         }
     }
@@ -90,7 +90,9 @@ impl<'a> Chart<'a> {
             .filter(|curve| subject.shows(curve.technique) && known(curve).next().is_some())
             .collect();
         // What a bake does comes last, on top.
-        curves.sort_by_key(|curve| (curve.technique == Technique::Mis, curve.technique));
+        curves.sort_by_key(|curve| {
+            (curve.technique == Technique::Shared, curve.technique == Technique::Mis, curve.technique)
+        });
         let is_told = match subject {
             Subject::Time | Subject::Paths => !curves.is_empty(),
             Subject::Bounces => curves.iter().any(|curve| matches!(curve.technique, Technique::Capped(_))),
@@ -155,6 +157,7 @@ fn look(technique: Technique) -> (RGBColor, f64, Mark) {
         Technique::Mis => (RGBColor(0, 96, 160), 3.2, Mark::Disc),
         Technique::Denoised => (RGBColor(0, 122, 92), 2.4, Mark::Diamond),
         Technique::Reused => (RGBColor(90, 90, 90), 2.4, Mark::Triangle),
+        Technique::Shared => (RGBColor(170, 0, 60), 3.2, Mark::Disc),
         Technique::Adaptive => (RGBColor(0, 0, 0), 2.0, Mark::Square),
         Technique::Independent => (RGBColor(150, 70, 120), 2.0, Mark::Wedge),
         // Broad, since what a bake does often lies on top.

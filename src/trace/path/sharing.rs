@@ -19,6 +19,7 @@
 use super::Tally;
 use super::start::PathStart;
 use super::vertex::Vertex;
+use crate::trace::effects::Effect;
 use crate::trace::tracer::Tracer;
 use crate::trace::transport::{Sharing, Transport};
 use glam::Vec3;
@@ -59,9 +60,10 @@ impl Found {
 }
 
 impl Tracer {
-    /// Whom paths serve that start in this scene.
+    /// Whom paths serve that start in this scene: where there is nothing to share, their own receivers alone.
     pub(crate) fn sharing(&self, transport: &Transport) -> Sharing {
-        if self.is_diffuse() { transport.sharing } else { Sharing::Alone }
+        let has_any = self.effects.has(Effect::Interreflection) || self.sky_radiance != Vec3::ZERO;
+        if has_any && self.is_diffuse() { transport.sharing } else { Sharing::Alone }
     }
 
     /// Deals out what the path of receiver `own` found: adds the light of each receiver of its group [cd/m²], of which
