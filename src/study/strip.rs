@@ -60,7 +60,8 @@ pub(super) fn strip(
         if count > part.most() || !is_affordable {
             break;
         }
-        while taken < count && part.goes_on() {
+        // The first picture is taken however busy the machine is.
+        while taken < count && (taken == 0 || part.goes_on()) {
             taken = count.min(taken + ((STEP * f64::from(taken)) as u32).max(COUNTS[0]));
             film.carry_on(taken)?;
             part.report(f64::from(taken) / f64::from(COUNTS[COUNTS.len() - 1].min(part.most())));
