@@ -175,7 +175,7 @@ fn no_jump_on_a_cylinder() {
 /// e in six or seven texels, or two grids at an angle cannot show the same of it to 1 % of what is local.
 #[test]
 fn no_jump_on_a_torus() {
-    check("torus", &torus(), Charting::ByHand, &Setting { density: 224.0, ..Setting::default() }).unwrap();
+    check("torus", &torus(), Charting::ByHand, &Setting { density: 288.0, ..Setting::default() }).unwrap();
 }
 
 /// Where the edge of a shadow is as narrow as a texel, jumps are left at its dark foot, not the shadow smeared along the
