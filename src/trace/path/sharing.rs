@@ -10,7 +10,8 @@
 //! L(y) pⱼ(y) / Σₖ pₖ(y),
 //!
 //! a share of the path's light. The shares of all receivers add up to one, and none is above one, however near to a
-//! receiver the place is. A constant sky is shared by directions, pₖ = cos θₖ / π.
+//! receiver the place is. A constant sky is shared by directions, pₖ = cos θₖ / π, among receivers that face the same way:
+//! it has no noise where nothing hides it, and shares that differ would bring some.
 //!
 //! Light straight from sources is not shared: it is nearly noiseless by itself, and the weights of what both light
 //! sampling and the path find are a receiver's own. Nor is light that looks different from elsewhere: a path whose
@@ -75,7 +76,7 @@ impl Tracer {
         };
         let mut densities = [0.0_f32; MOST_RECEIVERS];
         for (number, (start, density)) in starts.iter().zip(&mut densities).enumerate() {
-            *density = whence.density(start);
+            *density = if whence.is_for(start, &starts[own]) { whence.density(start) } else { 0.0 };
             if number != own && *density > 0.0 {
                 tally.rays += 1;
                 if !self.sees(start, whence) {
@@ -109,6 +110,11 @@ impl From<&Vertex<'_>> for Whence {
 }
 
 impl Whence {
+    /// Whether a path of `own` can serve another.
+    fn is_for(self, start: &PathStart, own: &PathStart) -> bool {
+        matches!(self, Self::Surface { .. }) || start.normal == own.normal
+    }
+
     /// How densely directions from a start find it, but for a factor that all starts have.
     fn density(self, start: &PathStart) -> f32 {
         let (direction, falloff) = match self {

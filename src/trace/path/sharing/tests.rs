@@ -85,11 +85,12 @@ fn second_opinion(tracer: &Tracer, starts: &[PathStart], own: usize, found: &Fou
                 (wi, cosine / falloff, tracer.accel.is_blocked(start.origin, point))
             }
         };
+        let is_for = matches!(whence, Whence::Surface { .. }) || start.normal == starts[own].normal;
         let is_seen = number == own || fault == Fault::NoVisibility || !is_blocked;
         let cosine = start.normal.dot(wi);
         let is_before = cosine > 0.0 && geometry > 0.0;
         let cosine = if fault == Fault::NoCosineHere { 1.0 } else { cosine };
-        if is_before && is_seen { cosine * geometry } else { 0.0 }
+        if is_for && is_before && is_seen { cosine * geometry } else { 0.0 }
     };
     let densities: Vec<f32> = (0..starts.len()).map(density).collect();
     let sum: f32 = densities.iter().sum();
