@@ -1,6 +1,7 @@
-//! What sampling to an error and the fast mode gain, on three scenes against long references: paths that the worst tenth
-//! of the texels costs with as many paths for all and with as many as each needs; processor time of a 2 % bake with all
-//! bounces traced and with the lightmap reused, and what the latter is biased by. Prints tables; asserts nothing.
+//! What sampling to an error and the fast mode gain, on three scenes against long references: paths that the worst
+//! tenth of the texels costs with as many paths for all and with as many as each needs; processor time of a 2 % bake
+//! with all bounces traced and with the lightmap reused, and what the latter is biased by. Prints tables; asserts
+//! nothing.
 //!
 //! `cargo bench --bench adaptive -- [fast | adaptive] [SCENE]`
 
@@ -112,8 +113,8 @@ impl Truth {
         root_mean(&self.products([values, values]))
     }
 
-    /// That over all, and over the tenth of the texels where it is worst, of bakes with random numbers of their own: what
-    /// a texel is to be off by, not what it happens to be.
+    /// That over all, and over the tenth of the texels where it is worst, of bakes with random numbers of their own:
+    /// what a texel is to be off by, not what it happens to be.
     fn errors(&self, bakes: &[Vec<f64>]) -> [f64; 2] {
         let products: Vec<Vec<f64>> = bakes.iter().map(|values| self.products([values, values])).collect();
         let of_texel = |texel: usize| products.iter().map(|bake| bake[texel]).sum::<f64>() / bakes.len() as f64;

@@ -1,5 +1,5 @@
-//! Rays per second of processor time on one thread: nearest hit and any hit, for rays of neighbouring pixels and for rays that leave
-//! surfaces in all directions, 64 from each point. Million rays a second = elements a second / 10⁶.
+//! Rays per second of processor time on one thread: nearest hit and any hit, for rays of neighbouring pixels and for
+//! rays that leave surfaces in all directions, 64 from each point. Million rays a second = elements a second / 10⁶.
 
 mod hall;
 

@@ -1,8 +1,7 @@
-//! The denoiser against long references (`tests/data/README.md`): 64 samples and it against 512 without it whose paths serve
-//! no other texel, and the
-//! contrast of contact shadows and shadow edges, in the mean of a few bakes with other random numbers: of a single one
-//! either is a matter of luck. What is judged by contrast and error is itself judged: a blur must fail the one, and what
-//! is not denoised the other.
+//! The denoiser against long references (`tests/data/README.md`): 64 samples and it against 512 without it whose paths
+//! serve no other texel, and the contrast of contact shadows and shadow edges, in the mean of a few bakes with other
+//! random numbers: of a single one either is a matter of luck. What is judged by contrast and error is itself judged: a
+//! blur must fail the one, and what is not denoised the other.
 
 mod common;
 #[path = "denoise/judge.rs"]

@@ -1,5 +1,5 @@
-//! The house's one direction: `math, artefact ← scene ← trace ← bake ← study ← output ← plugin ← bin`. Each folder may use
-//! those to its left and none to its right, and only `plugin` and `bin` name Bevy.
+//! The house's one direction: `math, artefact ← scene ← trace ← bake ← study ← output ← plugin ← bin`. Each folder may
+//! use those to its left and none to its right, and only `plugin` and `bin` name Bevy.
 
 use std::path::{Path, PathBuf};
 

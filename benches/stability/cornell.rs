@@ -1,5 +1,5 @@
-//! One path's relative variance (variance over the square of the mean) in the empty Cornell box, half a millimetre under its
-//! lamp and in the middle of its floor: of ours, and of the textbook's area light.
+//! One path's relative variance (variance over the square of the mean) in the empty Cornell box, half a millimetre
+//! under its lamp and in the middle of its floor: of ours, and of the textbook's area light.
 //!
 //! Ours is a meter of one path for each of its replicates, which are scrambled independently: their spread is that of
 //! single paths, and nothing of it is hidden by the evenness of a sequence. The naive one is a quadrature of its

@@ -1,4 +1,5 @@
-//! A run without a person: bakes or opens a folder, waits until the lightmaps are on the screen, takes its picture, ends.
+//! A run without a person: bakes or opens a folder, waits until the lightmaps are on the screen, takes its picture,
+//! ends.
 
 use crate::args::Args;
 use crate::bake::{Status, start};

@@ -24,9 +24,9 @@ pub enum Goal {
 
 /// The share of the mean luminance of all texels below which an error is no longer relative.
 ///
-/// On a screen where that mean is middle grey (18 % of white), 2 % of this floor is 3.6e-4 of white, and the finest step
-/// of an 8-bit sRGB picture, that of its darkest greys, 1 / (255 · 12.92) or 3.0e-4 of white: below the floor 2 % is
-/// one step of what can be shown.
+/// On a screen where that mean is middle grey (18 % of white), 2 % of this floor is 3.6e-4 of white, and the finest
+/// step of an 8-bit sRGB picture, that of its darkest greys, 1 / (255 · 12.92) or 3.0e-4 of white: below the floor 2 %
+/// is one step of what can be shown.
 pub const DARK: f64 = 0.1;
 
 impl Default for Goal {

@@ -1,5 +1,5 @@
-//! A few texels that stand for all of a lightmap, measured as the bake measures them, in any manner: for studies of what
-//! accuracy costs. Owns which texels these are and sums that can be carried on; says nothing about errors.
+//! A few texels that stand for all of a lightmap, measured as the bake measures them, in any manner: for studies of
+//! what accuracy costs. Owns which texels these are and sums that can be carried on; says nothing about errors.
 
 use super::atlas::Atlas;
 use super::endless::refuse_endless_texels;

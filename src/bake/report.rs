@@ -27,7 +27,8 @@ pub struct BakeReport {
     pub relative_stderr: RelativeError,
     /// How well texels are known, before repair.
     pub intervals: Intervals,
-    /// What the first pass of the fast mode did, which is a part of the sums above; `None` where all bounces were traced.
+    /// What the first pass of the fast mode did, which is a part of the sums above; `None` where all bounces were
+    /// traced.
     pub first_pass: Option<FirstPass>,
     /// What the denoiser did; `None` where it was off.
     pub denoised: Option<Denoised>,

@@ -1,11 +1,11 @@
-//! The first pass of a bake that reuses its own lightmap: every texel measured by a few whole paths, and what comes of it
-//! laid out for the paths of the bake proper, which end where they meet it ([`LaterBounces::Reused`]).
+//! The first pass of a bake that reuses its own lightmap: every texel measured by a few whole paths, and what comes of
+//! it laid out for the paths of the bake proper, which end where they meet it ([`LaterBounces::Reused`]).
 //!
 //! It is frozen before the bake proper begins, so that neither threads nor the order of the work can matter, and has
 //! random numbers of its own, so that a texel's noise never comes back to itself. What the mode is biased by is two
 //! things: a texel stands for all places on it, and its noise is the same for all paths that end on it. A texel is not
-//! light to be read where it is hidden, where nothing covers it, where it is covered twice, and where a wall cuts it, so
-//! that a part of it is not what was measured.
+//! light to be read where it is hidden, where nothing covers it, where it is covered twice, and where a wall cuts it,
+//! so that a part of it is not what was measured.
 
 use super::atlas::Atlas;
 use super::charts::Charts;

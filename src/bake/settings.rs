@@ -44,8 +44,9 @@ pub enum LaterBounces {
     Traced,
     /// The fast mode: a first pass measures every texel by a few whole paths; those of the bake proper end where they
     /// meet one, on the front of a diffuse surface, and take its light. Biased by what a texel is coarse and by the
-    /// first pass's noise: below 1 % as measured in `docs/accuracy.md`. Where a lightmap has no say (on glossy surfaces,
-    /// backs, near corners, what has no texels, and all paths that [`Transport::max_bounces`] cuts) paths go on.
+    /// first pass's noise: below 1 % as measured in `docs/accuracy.md`. Where a lightmap has no say (on glossy
+    /// surfaces, backs, near corners, what has no texels, and all paths that [`Transport::max_bounces`] cuts) paths go
+    /// on.
     Reused,
 }
 

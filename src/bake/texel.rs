@@ -126,8 +126,8 @@ impl Texel {
         tracer.start_on_smooth_triangle(patch.triangle, barycentric, patch.normals)
     }
 
-    /// A start that stands for the places around it: the same, drawn away from the borders of the piece that it lies on,
-    /// where other surfaces often meet this one.
+    /// A start that stands for the places around it: the same, drawn away from the borders of the piece that it lies
+    /// on, where other surfaces often meet this one.
     pub(super) fn inner_start(&self, tracer: &Tracer, u: Vec2) -> PathStart {
         let (patch, [second, third]) = self.point(u);
         let middle = patch.middle();

@@ -2,16 +2,16 @@
 //!
 //! A tile is a square of texels of one object. Its texels are sampled in rounds, two of which double their paths; a
 //! texel whose interval is narrow enough takes no part in the next. Nothing but a tile's own texels has a say in that,
-//! so threads and the order of tiles cannot matter, and no more runs are held than those of the tiles in work. Texels that
-//! share their paths (`together`) go on until the last of them is done: what it takes to know that one is a number of
-//! paths, whoever's they are, and the others gain by it.
+//! so threads and the order of tiles cannot matter, and no more runs are held than those of the tiles in work. Texels
+//! that share their paths (`together`) go on until the last of them is done: what it takes to know that one is a number
+//! of paths, whoever's they are, and the others gain by it.
 //!
 //! The interval of a texel goes by the spread of its runs. By chance a spread comes out too small: where a path in
 //! thousands brings all the light, most runs agree that there is none. And who looks after each round and stops at the
-//! first small spread picks just these (Wald 1945 on tests that look again and again). So the variance of a texel counts
-//! as no smaller than the mean over it and those around it in its tile and chart, each scaled to the texel's number of
-//! paths: nine texels together have 135 degrees of freedom, which are not small by chance. Where a texel is noisier than
-//! those around it its own variance stands. How many standard errors that makes is `quantile`'s.
+//! first small spread picks just these (Wald 1945 on tests that look again and again). So the variance of a texel
+//! counts as no smaller than the mean over it and those around it in its tile and chart, each scaled to the texel's
+//! number of paths: nine texels together have 135 degrees of freedom, which are not small by chance. Where a texel is
+//! noisier than those around it its own variance stands. How many standard errors that makes is `quantile`'s.
 //!
 //! A texel that comes out bright by chance would be allowed a larger error, stop, and stay too bright. What an error is
 //! relative to is therefore the mean over those around it, as far as the texel's own interval allows.
@@ -39,8 +39,9 @@ pub(super) const LEAST_PATHS: u32 = 64;
 /// The most paths that a texel gets.
 pub(super) const MOST_PATHS: u32 = 1 << 20;
 
-/// Paths of the round after the one of so many: half as many more, then a third, so that two rounds double them. A round
-/// that doubled them alone would leave a texel with 1.44 times the paths that it needs in the mean; these leave 1.2.
+/// Paths of the round after the one of so many: half as many more, then a third, so that two rounds double them. A
+/// round that doubled them alone would leave a texel with 1.44 times the paths that it needs in the mean; these leave
+/// 1.2.
 pub(super) fn after(paths: u32) -> u32 {
     if paths.is_power_of_two() { paths / 2 * 3 } else { paths / 3 * 4 }
 }

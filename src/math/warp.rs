@@ -1,6 +1,6 @@
 //! Maps from the unit square to a disk, to hemispheres and cones around +Z, to the sphere and to a triangle, each with
-//! its density and its inverse. All keep neighbours together, so that a stratified or low-discrepancy set stays one. Does not turn the
-//! result into world space: [`Frame`](super::Frame) does.
+//! its density and its inverse. All keep neighbours together, so that a stratified or low-discrepancy set stays one.
+//! Does not turn the result into world space: [`Frame`](super::Frame) does.
 //!
 //! Disk and hemispheres: Shirley and Chiu 1997, "A Low Distortion Map Between Disk and Square". Triangle: Heitz
 //! 2019, "A Low-Distortion Map Between Triangle and Square".

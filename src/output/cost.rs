@@ -1,6 +1,6 @@
-//! Where the paths of a bake went, as a picture for a person: black where nothing was measured, then from dark blue over
-//! green to yellow, a step of the scale for each doubling of a texel's paths. The scale begins at the first round, 64
-//! paths, and ends at a million.
+//! Where the paths of a bake went, as a picture for a person: black where nothing was measured, then from dark blue
+//! over green to yellow, a step of the scale for each doubling of a texel's paths. The scale begins at the first round,
+//! 64 paths, and ends at a million.
 
 use super::png::write_rgb;
 use crate::bake::Page;

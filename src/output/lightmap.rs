@@ -28,8 +28,10 @@ pub struct WrittenLightmap {
 }
 
 /// Writes a lightmap into the folder `dir`, which is made if it is missing: `lightmap_<page>.ktx2` to display,
-/// `lightmap_<page>.png` to look at, `overview_<page>.png` to see how the page is used, `cost_<page>.png` to see where the paths went, with [`OutputFormat::Exr`] `lightmap_<page>.exr` to measure with,
-/// `meshes.kiln` if the bake laid meshes out anew, and `kiln.ron`, which says where each object lies. `scene_name` is the caller's own word for the scene.
+/// `lightmap_<page>.png` to look at, `overview_<page>.png` to see how the page is used, `cost_<page>.png` to see where
+/// the paths went, with [`OutputFormat::Exr`] `lightmap_<page>.exr` to measure with, `meshes.kiln` if the bake laid
+/// meshes out anew, and `kiln.ron`, which says where each object lies. `scene_name` is the caller's own word for the
+/// scene.
 ///
 /// All files are complete on the disk before the first takes its place, and the manifest takes its place last: what
 /// fails before leaves the folder as it was.

@@ -40,10 +40,9 @@
 //!
 //! Lights, materials and skies are read as Bevy shows them. What shines from all around is a camera's
 //! `EnvironmentMapLight`, or the picture in [`SceneSettings::environment`]. A `RectLight` is baked in any case, but
-//! Bevy draws it only with its own feature `area_light_luts`. Bevy's glTF loader gives lights without a range one of
-//! 20 m, and spot lights their range as their radius; both are taken away again.
-//! It also takes their linear colours for sRGB ones, so that a coloured light is more saturated than its file says; that
-//! is baked as Bevy shows it.
+//! Bevy draws it only with its own feature `area_light_luts`. Bevy's glTF loader gives lights without a range one of 20
+//! m, and spot lights their range as their radius; both are taken away again. It also takes their linear colours for
+//! sRGB ones, so that a coloured light is more saturated than its file says; that is baked as Bevy shows it.
 //!
 //! Deferred rendering adds baked lights a second time whatever the flags say (Bevy 0.19); use forward rendering.
 

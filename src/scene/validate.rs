@@ -150,9 +150,9 @@ fn too_far(mesh: &Mesh, transform: &Affine3A) -> Option<FaultKind> {
     Some(FaultKind::TooFar { distance, limit: FARTHEST })
 }
 
-/// The most that a source may give off [cd/m², cd or lx]. The largest `f32` is 3·10³⁸; this leaves room for the radiance
-/// of the smallest sun, 3.2·10⁹ times its illuminance, and for the inverse square of a micrometre. The sun's own disc
-/// has 1.6·10⁹ cd/m².
+/// The most that a source may give off [cd/m², cd or lx]. The largest `f32` is 3·10³⁸; this leaves room for the
+/// radiance of the smallest sun, 3.2·10⁹ times its illuminance, and for the inverse square of a micrometre. The sun's
+/// own disc has 1.6·10⁹ cd/m².
 const MAX_EMISSION: f32 = 1e25;
 
 /// What is wrong with an emission, if anything is.

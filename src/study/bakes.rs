@@ -1,5 +1,5 @@
-//! Whole bakes, read at the receivers: denoised and repaired ones of more and more paths, and as measured ones that were
-//! asked for smaller and smaller errors.
+//! Whole bakes, read at the receivers: denoised and repaired ones of more and more paths, and as measured ones that
+//! were asked for smaller and smaller errors.
 
 use super::StudySettings;
 use super::budget::Part;

@@ -106,8 +106,8 @@ impl Part<'_> {
         (self.budget.progress)(&StudyProgress { what: self.what.clone(), done: done.min(1.0), seconds_left });
     }
 
-    /// Doubles paths as long as there is room, and calls `trace` to carry on to a number of them, in steps that are short
-    /// enough to tell about. `reached` hears of every doubling.
+    /// Doubles paths as long as there is room, and calls `trace` to carry on to a number of them, in steps that are
+    /// short enough to tell about. `reached` hears of every doubling.
     pub(super) fn double<E>(
         &self,
         mut trace: impl FnMut(u32) -> Result<(), E>,

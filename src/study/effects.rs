@@ -19,8 +19,8 @@ const MOST: u32 = 4096;
 pub struct EffectShare {
     /// The effect.
     pub effect: Effect,
-    /// Share of the tracing time that would be saved without it, at as many paths; negative if it saves time. The shares
-    /// of several effects do not add up: without a light, what it lights costs nothing either.
+    /// Share of the tracing time that would be saved without it, at as many paths; negative if it saves time. The
+    /// shares of several effects do not add up: without a light, what it lights costs nothing either.
     pub time: f64,
     /// Share of the mean light that would be missing without it; negative if there would be more.
     pub light: f64,

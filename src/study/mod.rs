@@ -7,8 +7,8 @@
 //! against it, over its mean, by luminance, with its own noise taken out (`truth`); a point too near to that noise is
 //! marked. A line through each curve gives its slope, and the curve the price of an error (`fit`).
 //!
-//! Sixteen paths are the least, since a bake deals its paths to sixteen scrambles. Only how far curves go depends on the
-//! clock; what is measured after so many paths does not, nor does which texels are measured.
+//! Sixteen paths are the least, since a bake deals its paths to sixteen scrambles. Only how far curves go depends on
+//! the clock; what is measured after so many paths does not, nor does which texels are measured.
 //!
 //! It knows no files: `output` makes a page of a [`Study`].
 
@@ -61,8 +61,8 @@ const WHOLE: [Technique; 3] = [Technique::Shared, Technique::Adaptive, Technique
 /// What a study is asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StudySettings {
-    /// The bake that is studied. Its goal, its estimator, its clamp, its mode and whether it denoises do not matter; its density is
-    /// lowered where whole bakes would take too long.
+    /// The bake that is studied. Its goal, its estimator, its clamp, its mode and whether it denoises do not matter;
+    /// its density is lowered where whole bakes would take too long.
     pub bake: BakeSettings,
     /// How much is done.
     pub effort: Effort,

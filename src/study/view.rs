@@ -11,8 +11,8 @@ const RAYS: i32 = 12;
 /// Whole vertical opening angle [rad].
 const FOV: f32 = 0.9;
 
-/// Where to look from, in half sizes of the scene's box about its middle: from its upper corners within and from outside
-/// on all sides. A closed room shows its walls' backs from outside, and an open one its inside.
+/// Where to look from, in half sizes of the scene's box about its middle: from its upper corners within and from
+/// outside on all sides. A closed room shows its walls' backs from outside, and an open one its inside.
 const EYES: [[f32; 3]; 10] = [
     [0.0, 0.0, 1.0],
     [0.0, 0.0, -1.0],

@@ -1,22 +1,22 @@
 //! Finding what a ray meets: the only file that names `obvhs`.
 //!
 //! obvhs builds a binary tree (PLOC with reinsertion); `accel/wide.rs` makes nodes of eight boxes and packets of eight
-//! triangles of it, `accel/walk.rs` takes rays through them, with eight numbers at once (`accel/lanes.rs`). The triangle
-//! test is watertight ([`super::triangle`]). Boxes are padded, because the slab test rounds: without the padding a ray
-//! can miss a box whose triangle it hits. All triangles lie in one frame: a static bake needs no instance transforms,
-//! and a second rounding on the way down would break watertightness between neighbours.
+//! triangles of it, `accel/walk.rs` takes rays through them, with eight numbers at once (`accel/lanes.rs`). The
+//! triangle test is watertight ([`super::triangle`]). Boxes are padded, because the slab test rounds: without the
+//! padding a ray can miss a box whose triangle it hits. All triangles lie in one frame: a static bake needs no instance
+//! transforms, and a second rounding on the way down would break watertightness between neighbours.
 //!
 //! The triangle test multiplies three coordinates. That these products neither overflow nor vanish, whatever size the
 //! scene has, all lengths in here are scaled by a power of two, which rounds nothing, that makes it 2³⁰ units large.
 //!
 //! # Rays from afar
 //!
-//! What the triangle test and the slab test round grows with the distance of the
-//! ray's origin. So only rays that start within [`NEAR`] of the scene's reach r (its largest coordinate) go to the tree
-//! as they are: no coordinate difference is then above 2.5 r < 2^32.4 units and no product of three above 2⁹⁸. Any other
-//! ray is first moved along its own line to a cube of 1.25 r, in f64 (`accel/far.rs`), where it may be off by 2⁻⁵² of
-//! the distance that it came: less than f32 can tell within the scene up to 2²⁸ reaches away. Farther out nothing
-//! overflows, only that error grows with the distance.
+//! What the triangle test and the slab test round grows with the distance of the ray's origin. So only rays that start
+//! within [`NEAR`] of the scene's reach r (its largest coordinate) go to the tree as they are: no coordinate difference
+//! is then above 2.5 r < 2^32.4 units and no product of three above 2⁹⁸. Any other ray is first moved along its own
+//! line to a cube of 1.25 r, in f64 (`accel/far.rs`), where it may be off by 2⁻⁵² of the distance that it came: less
+//! than f32 can tell within the scene up to 2²⁸ reaches away. Farther out nothing overflows, only that error grows with
+//! the distance.
 //!
 //! # Padding
 //!

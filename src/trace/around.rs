@@ -49,11 +49,11 @@ impl Tracer {
         self.accel.meets(a, b, |hit| !self.surface(hit.triangle).passes)
     }
 
-    /// Whether a start seems to lie inside a body. In most of [`DIRECTIONS`] over its surface the first thing that a ray
-    /// meets is then the back of a surface, also where the body is open on the side that it stands on; or, where another
-    /// body reaches into it, the ray leaves bodies once more than it enters any (the winding number of Jacobson, Kavan and
-    /// Sorkine-Hornung 2013). Beside a wall that has a front only it may seem so too, which whoever asks has to tell apart
-    /// by the light that gets there.
+    /// Whether a start seems to lie inside a body. In most of [`DIRECTIONS`] over its surface the first thing that a
+    /// ray meets is then the back of a surface, also where the body is open on the side that it stands on; or, where
+    /// another body reaches into it, the ray leaves bodies once more than it enters any (the winding number of
+    /// Jacobson, Kavan and Sorkine-Hornung 2013). Beside a wall that has a front only it may seem so too, which whoever
+    /// asks has to tell apart by the light that gets there.
     pub(crate) fn is_enclosed(&self, start: &PathStart) -> bool {
         let frame = Frame::new(start.geometric_normal());
         let direction = |index: usize| {

@@ -1,5 +1,5 @@
-//! Light that is known beforehand: a table of E/π over the fronts of triangles, at which a path may end instead of going
-//! on. Owns the table and how a place is looked up in it; who fills it, and how well, is not its business.
+//! Light that is known beforehand: a table of E/π over the fronts of triangles, at which a path may end instead of
+//! going on. Owns the table and how a place is looked up in it; who fills it, and how well, is not its business.
 //!
 //! A path that meets a Lambert surface from its front needs the irradiance there and nothing else, since such a surface
 //! shows the same from all sides. Ward, Rubinstein and Clear (1988) kept it where it had been computed; here it lies on

@@ -67,8 +67,8 @@ impl Tracer {
         with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).find(start))
     }
 
-    /// Radiance that arrives against `direction` at `origin`, a point of the world, along a camera's ray [cd/m²]. Lights
-    /// that are no surfaces are not seen, as in Bevy.
+    /// Radiance that arrives against `direction` at `origin`, a point of the world, along a camera's ray [cd/m²].
+    /// Lights that are no surfaces are not seen, as in Bevy.
     pub(crate) fn camera_radiance(
         &self,
         origin: Vec3,

@@ -30,17 +30,17 @@
 //!
 //! The sum is 19.3 u; k = 32 = 16 ε/u is the next power of two. A start is then 20.8 u·Σ|Nᵢ|·mᵢ above its plane or more
 //! and meets its triangle nowhere. In a plane along the axes through the traced origin, d = 0, interpolation is exact;
-//! the start lies in the plane itself, which is not met from there. Whether a hit near the start lies on the ray's side or the other is decided in f64
-//! ([`super::triangle`]), whose own error is 2⁻²⁹ of these.
+//! the start lies in the plane itself, which is not met from there. Whether a hit near the start lies on the ray's side
+//! or the other is decided in f64 ([`super::triangle`]), whose own error is 2⁻²⁹ of these.
 //!
 //! *What may be missed* in return: a start is no farther than (32 + 11.2)/32 = 1.35 d from its plane, d ≤ 1.91e-6·Σ|Nᵢ|·mᵢ,
 //! so a neighbour that lies farther above it is seen.
 //!
 //! *Beside an edge* all that is not enough: a start within rounding of the edge may lie beyond the wall that stands
 //! there. Let walls meet at an angle θ; a start at a distance w from the edge and a height h lies w·sin θ − h·cos θ
-//! before the other wall, rounding (11.2 u·Σ|Nᵢ|·mᵢ) aside. Points that rays leave are therefore kept w = 64 u·max m off
-//! the edges of their triangle, a shift along the surface as small as that along the normal. With Σ|Nᵢ|·mᵢ ≤ √3·max m
-//! this is enough for θ ≥ 62° in the worst case, and in all cases for walls at right angles. In narrower corners the
+//! before the other wall, rounding (11.2 u·Σ|Nᵢ|·mᵢ) aside. Points that rays leave are therefore kept w = 64 u·max m
+//! off the edges of their triangle, a shift along the surface as small as that along the normal. With Σ|Nᵢ|·mᵢ ≤ √3·max
+//! m this is enough for θ ≥ 62° in the worst case, and in all cases for walls at right angles. In narrower corners the
 //! share of starts beyond the other wall is that of a strip as wide as h/tan θ.
 //!
 //! All of this holds barring underflow: for coordinates of zero or above 10⁻³⁰ m.

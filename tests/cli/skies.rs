@@ -48,7 +48,8 @@ fn a_sky_from_a_file_is_taken_by_every_verb_and_a_bad_one_is_a_sentence() {
     }
 }
 
-/// The lit octant has up, +X and -Z for its edges: ∫ cos dω = π/4 on a surface that faces any of them, 0 on their backs.
+/// The lit octant has up, +X and -Z for its edges: ∫ cos dω = π/4 on a surface that faces any of them, 0 on their
+/// backs.
 #[test]
 fn a_sky_from_a_file_lies_the_right_way_round_and_is_radiance() {
     let folder = temp_dir::TempDir::new().unwrap();

@@ -45,9 +45,9 @@ fn loses_a_piece(mut scene: Scene) -> Scene {
     scene
 }
 
-/// By how much a cut may change what the same random numbers find at a point. Paths meet the same places but for rounding
-/// and for the rim of each triangle: what rays leave keeps 64u of the largest coordinate off its edges, 12 µm of 3 m,
-/// and light that falls with the square of a distance of 0.3 m changes by 2/0.3 of that.
+/// By how much a cut may change what the same random numbers find at a point. Paths meet the same places but for
+/// rounding and for the rim of each triangle: what rays leave keeps 64u of the largest coordinate off its edges, 12 µm
+/// of 3 m, and light that falls with the square of a distance of 0.3 m changes by 2/0.3 of that.
 const ROUNDING: f64 = 1e-4;
 
 /// By how much it may change the mean, of some thousands of paths: now and then one passes on the other side of an edge

@@ -109,7 +109,8 @@ fn above_the_horizon(elevation: f64, half_angle: f64) -> f64 {
 
 #[test]
 fn the_quadrature_is_right_where_the_answer_is_known() {
-    // Wholly above: π sin² of the half angle × sin of the elevation. Half of it (Howell's catalogue, B-15): a − sin a cos a.
+    // Wholly above: π sin² of the half angle × sin of the elevation. Half of it (Howell's catalogue, B-15): a − sin a
+    // cos a.
     assert!((above_the_horizon(0.7, 0.3) / (PI * 0.3_f64.sin().powi(2) * 0.7_f64.sin()) - 1.0).abs() < 1e-6);
     assert!((above_the_horizon(0.0, 0.8) / (0.8 - 0.8_f64.sin() * 0.8_f64.cos()) - 1.0).abs() < 1e-5);
     assert!(above_the_horizon(-0.5, 0.4).abs() < 1e-12);

@@ -178,8 +178,8 @@ fn no_jump_on_a_torus() {
     check("torus", &torus(), Charting::ByHand, &Setting { density: 288.0, ..Setting::default() }).unwrap();
 }
 
-/// Where the edge of a shadow is as narrow as a texel, jumps are left at its dark foot, not the shadow smeared along the
-/// seam: few, and small against the light beside them.
+/// Where the edge of a shadow is as narrow as a texel, jumps are left at its dark foot, not the shadow smeared along
+/// the seam: few, and small against the light beside them.
 #[test]
 fn what_texels_do_not_resolve_is_left_and_small() {
     let scene = scene("torus", &torus(), Charting::ByHand, &Setting::default());

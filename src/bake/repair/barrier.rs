@@ -8,9 +8,9 @@
 //! leak is brighter than that.
 //!
 //! Two texels are on different sides if one cannot be reached from the other by links between neighbours within
-//! [`WINDOW`] texels: so the leg of a table, around which one can go, is no wall. And there must be covered texels all the
-//! way between them for a wall to stand on: two ends of a bent chart that come close on the page are no neighbours. Nor is
-//! what is narrower than a texel a room: nothing gives way for slits of which no texel is in sight by half.
+//! [`WINDOW`] texels: so the leg of a table, around which one can go, is no wall. And there must be covered texels all
+//! the way between them for a wall to stand on: two ends of a bent chart that come close on the page are no neighbours.
+//! Nor is what is narrower than a texel a room: nothing gives way for slits of which no texel is in sight by half.
 
 use super::dilate::Owners;
 use super::{Field, TexelState};

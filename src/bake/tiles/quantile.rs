@@ -1,8 +1,8 @@
 //! By how many standard errors a texel may miss the truth in 95 of 100 cases, the larger of its own variance and that
 //! pooled with those around it being taken for the true one.
 //!
-//! Taking the larger of two makes it larger in the mean. Where all texels are alike the share of intervals that hold the
-//! truth is the mean of 1 − 2·Q(q·√w), w being the larger of both over the true variance and Q the normal
+//! Taking the larger of two makes it larger in the mean. Where all texels are alike the share of intervals that hold
+//! the truth is the mean of 1 − 2·Q(q·√w), w being the larger of both over the true variance and Q the normal
 //! distribution's tail; own and pooled variance have χ² distributions. Solved for q once for each number of texels.
 
 use crate::bake::REPLICATES;

@@ -5,8 +5,8 @@
 //! (`flatten`, `unroll`, `relax`), turned into their tightest boxes (`tight`) and packed on the texels of the object's
 //! rectangle (`pack`). What counts is the shape that the mesh has in the world (`shape`): instances of one shape share
 //! charts, and those of about one size the packing as well. The work is counted in visits of triangles and limited
-//! (`work`); beyond the limit each plane gets a chart, at worst each triangle (`simple`). Same mesh, same bits: threads, the order
-//! of instances and the clock cannot matter. Where the texels go on pages is `atlas`'s.
+//! (`work`); beyond the limit each plane gets a chart, at worst each triangle (`simple`). Same mesh, same bits:
+//! threads, the order of instances and the clock cannot matter. Where the texels go on pages is `atlas`'s.
 
 mod charts;
 mod flatten;

@@ -19,8 +19,8 @@ const DEFECT: f64 = 0.3;
 /// How far apart two copies of a point may come to lie and still be one, over the size of the chart.
 const APART: f64 = 2e-4;
 
-/// A cut that opens by less than this is a slit [rad]: its two sides are so near each other on the page that there is no
-/// room between them for what lies beyond either. A tube's ends, on the far sides of the strip, are none.
+/// A cut that opens by less than this is a slit [rad]: its two sides are so near each other on the page that there is
+/// no room between them for what lies beyond either. A tube's ends, on the far sides of the strip, are none.
 const NARROW: f64 = 0.5;
 
 /// Unrolls a patch; `None` if it bends both ways, if it would have a slit, or if there is no work left.

@@ -184,7 +184,8 @@ pub(crate) struct BakeArgs {
     pub(crate) layout: LayoutArgs,
     #[command(flatten)]
     pub(crate) goal: GoalArgs,
-    /// How texels are stored: rgb9e5, rgba16f, bc6h (compressed, a quarter of rgb9e5), or exr (rgb9e5 and f32 EXR besides)
+    /// How texels are stored: rgb9e5, rgba16f, bc6h (compressed, a quarter of rgb9e5), or exr (rgb9e5 and f32 EXR
+    /// besides)
     #[arg(long, value_name = "rgb9e5|rgba16f|bc6h|exr", default_value_t)]
     pub(crate) format: OutputFormat,
     /// End standard output with one JSON object

@@ -229,7 +229,8 @@ fn what_cannot_be_sampled_by_solid_angle_is_refused() {
     assert_eq!(triangle(touching - Vec3::X - Vec3::Y, touching + Vec3::X - Vec3::Y, touching + Vec3::Y), None);
 }
 
-/// A point of view (heights are powers of two) and what 60 digits say of it: the solid angle, and where the point (¼, ¾) of the square goes.
+/// A point of view (heights are powers of two) and what 60 digits say of it: the solid angle, and where the point (¼,
+/// ¾) of the square goes.
 type Exact = ([f32; 3], f64, [f64; 2]);
 
 /// The unit square in the plane z = 0.

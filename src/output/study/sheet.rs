@@ -2,7 +2,8 @@
 //! nothing of studies.
 //!
 //! Plotters has backends for both and no more of it is used: letters by `ab_glyph`, which needs no library of the
-//! system, from fonts that come along in `assets/fonts`. Its pictures have hard edges, so they are drawn larger and averaged.
+//! system, from fonts that come along in `assets/fonts`. Its pictures have hard edges, so they are drawn larger and
+//! averaged.
 
 use plotters::coord::Shift;
 use plotters::prelude::{

@@ -3,8 +3,8 @@
 use crate::study::{Standing, Study};
 use std::fmt::Write;
 
-/// Columns: technique, paths from each texel, processor time of the whole lightmap [s], error (root mean square over the
-/// mean, a share), `known` or `near_reference`.
+/// Columns: technique, paths from each texel, processor time of the whole lightmap [s], error (root mean square over
+/// the mean, a share), `known` or `near_reference`.
 pub(super) fn csv(study: &Study) -> String {
     let mut text = String::from("technique,paths,cpu_seconds,error,standing\n");
     for curve in &study.curves {

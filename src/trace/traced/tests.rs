@@ -151,7 +151,8 @@ fn answers(tracer: &Tracer, [point, other]: [Vec3; 2], index: u64) -> Vec<u32> {
     let hit = tracer.closest_hit(point, direction).expect("the room is closed");
     let aim = tracer.aim(point, direction, w, Vec2::new(v, u));
     let looked = tracer.camera_radiance(point, direction, &sampler, &transport, &mut Tally::default());
-    // Off all surfaces, on all sides, by more than the rounding of a point far away, which start_at makes allowance for.
+    // Off all surfaces, on all sides, by more than the rounding of a point far away, which start_at makes allowance
+    // for.
     let traced = tracer.traced_from_world.point(point);
     let is_free = |towards: Vec3| tracer.accel.closest(traced, towards, 0.04).is_none();
     let steps = [-1.0, 0.0, 1.0];

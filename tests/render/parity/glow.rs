@@ -1,5 +1,5 @@
-//! What Bevy shows otherwise or does not let light anything, against closed forms: ambient light, and surfaces that glow.
-//! The radiance of what glows is read off the screen: what glows there lights the room.
+//! What Bevy shows otherwise or does not let light anything, against closed forms: ambient light, and surfaces that
+//! glow. The radiance of what glows is read off the screen: what glows there lights the room.
 
 use super::stage::{self, Shown};
 use super::verdict::compare;

@@ -85,9 +85,9 @@ impl Texels {
         self.at(index, STEPS[number])
     }
 
-    /// Raises variances that are lower than most about them. Where light is rare a texel that little of it found is dark
-    /// and its runs agree: it looks certain. Beyond the edge of a shadow there are more of its kind. (What has no error
-    /// at all is `luck`'s.)
+    /// Raises variances that are lower than most about them. Where light is rare a texel that little of it found is
+    /// dark and its runs agree: it looks certain. Beyond the edge of a shadow there are more of its kind. (What has no
+    /// error at all is `luck`'s.)
     fn trusted_variance(&self, window: &Window) -> Vec<Vec3> {
         let mut trusted = self.variance.clone();
         let mut around = Vec::new();

@@ -3,9 +3,9 @@
 //!
 //! A texel beyond a chart's edge stands for the surface beyond the joint. The two triangles at the joint are unfolded
 //! into one plane, in which that texel's centre falls somewhere on the other chart; what a bilinear lookup shows there
-//! is what it gets, if all four texels of that hang together with the joint. So charts whose texels are in line show the
-//! same light with nothing left to solve. (Carrying a chart's own light on, as is done where nothing adjoins, is good to
-//! first order only, and where a shadow begins it is off by half the light.)
+//! is what it gets, if all four texels of that hang together with the joint. So charts whose texels are in line show
+//! the same light with nothing left to solve. (Carrying a chart's own light on, as is done where nothing adjoins, is
+//! good to first order only, and where a shadow begins it is off by half the light.)
 
 use super::super::lookup::Filtering;
 use super::samples::{Reading, Sample};

@@ -304,7 +304,8 @@ impl<'a> Sampling<'a> {
 }
 
 /// Where along a joint lookups are compared, in parts of the first edge: wherever either passes from one set of texels
-/// to the next, which is where two that are linear between such places differ most, and in between, for those that are not.
+/// to the next, which is where two that are linear between such places differ most, and in between, for those that are
+/// not.
 fn places(a: &Border, b: &Border, joint: &Joint) -> Vec<f64> {
     let of_b = |at: f64| b.parameter(a.ends[0].lerp(a.ends[1], at));
     let (b_from, b_to) = (of_b(joint.from), of_b(joint.to));

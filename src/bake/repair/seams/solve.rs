@@ -3,9 +3,9 @@
 //! Minimised is Σ ½ (d/e)² over the texels, d being how far one moves and e its error, plus for every lookup pair with
 //! the difference u the penalty c · max(0, |u| − t): t is a jump that nobody sees, and c bounds how hard the pair may
 //! pull (the loss of support vector regression, Vapnik 1995). So pairs that can agree do, and pairs that cannot pull
-//! with a force that does not grow with the jump: they distort nothing, and nothing needs to know beforehand which these
-//! are. No texel leaves its bounds. (Seams of lightmaps as least squares are Iwanicki's, "Lighting Technology of The Last of Us",
-//! 2013; there every pair pulls as hard as it is far off.)
+//! with a force that does not grow with the jump: they distort nothing, and nothing needs to know beforehand which
+//! these are. No texel leaves its bounds. (Seams of lightmaps as least squares are Iwanicki's, "Lighting Technology of
+//! The Last of Us", 2013; there every pair pulls as hard as it is far off.)
 //!
 //! Solved is the dual problem, one pair's pull after the other (Hildreth 1957; Hsieh et al. 2008): texels are where all
 //! pulls together hold them, so that at any time all bounds hold, and stopping early only leaves jumps. All sums run

@@ -1,5 +1,5 @@
-//! What must not break the choice or a sample: lights where the receiver is, of no size, of all sizes and powers, in one
-//! place. Nowhere NaN, and what is claimed still sums to one.
+//! What must not break the choice or a sample: lights where the receiver is, of no size, of all sizes and powers, in
+//! one place. Nowhere NaN, and what is claimed still sums to one.
 
 use super::sky::disc;
 use super::{along, lights, source, target};
