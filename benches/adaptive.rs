@@ -1,9 +1,11 @@
-//! What sampling to an error and the fast mode gain, on three scenes against long references: paths that the worst
-//! tenth of the texels costs with as many paths for all and with as many as each needs; processor time of a 2 % bake
-//! with all bounces traced and with the lightmap reused, and what the latter is biased by. Prints tables; asserts
-//! nothing.
+//! What sampling to an error and the fast mode gain, against long references: paths that the worst tenth of the texels
+//! costs with as many paths for all and with as many as each needs, in scenes that are uneven (`uneven.rs`) and in two
+//! that are not; processor time of a 2 % bake with all bounces traced and with the lightmap reused, and what the latter
+//! is biased by. Prints tables; asserts nothing.
 //!
 //! `cargo bench --bench adaptive -- [fast | adaptive] [SCENE]`
+
+mod uneven;
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -16,8 +18,7 @@ use bevy_kiln::bake::{
 };
 use bevy_kiln::scene::Scene;
 use bevy_kiln::trace::Transport;
-use common::scenes::{SceneBuilder, grey};
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 /// Bakes with random numbers of their own that a texel's error is taken over.
 const SEEDS: u64 = 4;
@@ -32,32 +33,20 @@ struct Case {
     density: f32,
 }
 
-/// A small lamp in one of two rooms, with a door between them.
-fn two_rooms() -> Scene {
-    let wall = || grey(0.7);
-    let (x, y, z) = (Vec3::X * 4.0, Vec3::Y * 2.0, Vec3::Z * 2.0);
-    let half = Vec3::X * 2.0;
-    SceneBuilder::default()
-        .room(Vec3::ZERO, x + y + z, [wall(), wall(), wall(), wall(), wall(), wall()])
-        .quad("left of the door", half, [y, z * 0.8], wall())
-        .quad("left of the door, behind", half, [z * 0.8, y], wall())
-        .quad("lintel", half + y * 0.9 + z * 0.8, [y * 0.1, z * 0.2], wall())
-        .quad("lintel, behind", half + y * 0.9 + z * 0.8, [z * 0.2, y * 0.1], wall())
-        .rect_light("lamp", Vec3::new(0.6, 1.9, 1.0), Vec3::NEG_Y, Vec2::splat(0.2), Vec3::splat(100.0))
-        .build()
-}
-
-fn cases() -> [Case; 3] {
+fn cases() -> [Case; 5] {
     let shared = |case: denoise_scenes::Case, size| Case {
         name: case.name,
         scene: case.scene,
         layout: Layout::Shared { size },
         density: 1.0,
     };
+    let packed = |name, scene, density| Case { name, scene, layout: Layout::Packed, density };
     [
         shared(denoise_scenes::cornell(), 48),
         shared(denoise_scenes::sunlit(), 64),
-        Case { name: "two rooms", scene: two_rooms(), layout: Layout::Packed, density: 8.0 },
+        packed("shed", uneven::shed(), 6.0),
+        packed("closet", uneven::closet(), 6.0),
+        packed("underpass", uneven::underpass(), 3.0),
     ]
 }
 

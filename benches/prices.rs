@@ -1,38 +1,29 @@
 //! Whether a price is what is paid: the time that the survey says an error will take, and the time that tracing to it
 //! then takes, by all cores. Prints a table; asserts nothing.
+//!
+//! `cargo bench --bench prices -- [SCENE]`
 
 mod hall;
 
-#[path = "../tests/common/glb.rs"]
-mod glb;
-#[path = "../tests/common/scenes.rs"]
-#[allow(dead_code, reason = "the tests use the rest")]
-mod scenes;
+#[path = "../tests/calibration/scenes.rs"]
+#[allow(dead_code, reason = "the calibration uses the rest")]
+mod calibration_scenes;
+#[path = "../tests/common/mod.rs"]
+mod common;
+#[path = "../tests/denoise/scenes.rs"]
+#[allow(dead_code, reason = "the denoiser's tests use the rest")]
+mod denoise_scenes;
 
 use bevy_kiln::bake::{BakePlan, BakeSettings, CancelToken, Denoise, Goal, Layout, Progress, Stage, bake_lightmap};
 use bevy_kiln::scene::Scene;
-use glam::Vec3;
-use scenes::{SceneBuilder, furnace, grey};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 /// Errors that are priced, in the order of the plan's.
 const ERRORS: [f64; 2] = [0.1, 0.05];
 
-/// A grey room under a bright sky that enters by a slit in one wall.
-fn slit() -> Scene {
-    let (x, y, z) = (Vec3::X * 2.0, Vec3::Y * 2.0, Vec3::Z * 2.0);
-    SceneBuilder::default()
-        .quad("floor", Vec3::ZERO, [z, x], grey(0.6))
-        .quad("ceiling", y, [x, z], grey(0.6))
-        .quad("back", Vec3::ZERO, [x, y], grey(0.6))
-        .quad("left", Vec3::ZERO, [y, z], grey(0.6))
-        .quad("right", x, [z, y], grey(0.6))
-        .quad("front low", z, [y * 0.6, x], grey(0.6))
-        .quad("front high", z + y * 0.9, [y * 0.1, x], grey(0.6))
-        .sky(Vec3::splat(10.0))
-        .build()
-}
+/// Size of maps that a scene's objects share [texels].
+const SIZE: u32 = 128;
 
 /// The time that tracing takes, without what comes before and after it.
 fn tracing(scene: &Scene, settings: &BakeSettings) -> Duration {
@@ -50,15 +41,18 @@ fn tracing(scene: &Scene, settings: &BakeSettings) -> Duration {
 }
 
 fn main() {
-    let cases: [(&str, Scene, Layout, f32); 5] = [
-        ("cornell", glb::load("cornell"), Layout::Shared { size: 128 }, 1.0),
-        ("furnace 0.9", furnace(0.9), Layout::Packed, 24.0),
-        ("slit", slit(), Layout::Packed, 6.0),
-        ("hall", hall::hall(), Layout::Packed, 1.0),
-        ("punctual", glb::load("punctual"), Layout::Shared { size: 128 }, 1.0),
-    ];
+    let calibrated = calibration_scenes::all().map(|case| {
+        let layout = if case.layout == Layout::Packed { Layout::Packed } else { Layout::Shared { size: SIZE } };
+        // The garden takes no time to speak of where it is coarse.
+        let finer = if case.name == "garden" { 16.0 } else { 2.0 };
+        (case.name, case.scene, layout, finer * case.density)
+    });
+    let cases = calibrated.into_iter().chain([("hall", hall::hall(), Layout::Packed, 1.0)]);
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
     println!("scene        error   predicted   real      predicted / real");
-    for (name, scene, layout, density) in cases {
+    for (name, scene, layout, density) in
+        cases.filter(|case| words.is_empty() || words.iter().any(|word| word == case.0))
+    {
         for error in ERRORS {
             let settings = BakeSettings {
                 goal: Goal::Error(error),

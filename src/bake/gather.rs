@@ -85,7 +85,7 @@ impl Estimate {
         mut path: impl FnMut(&Sobol, &mut Tally) -> Vec3,
     ) -> Option<Self> {
         let mut runs = Runs::new(paths.key, paths.clamp);
-        runs.extend(paths.count, cancel, |sobol, _, tally| Some(path(sobol, tally)))?;
+        runs.extend(paths.count, Sobol::new, cancel, |sobol, _, tally| Some(path(sobol, tally)))?;
         Some(runs.estimate())
     }
 

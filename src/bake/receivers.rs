@@ -3,7 +3,7 @@
 
 use super::atlas::Atlas;
 use super::endless::refuse_endless_texels;
-use super::gather::{REPLICATES, Start};
+use super::gather::Runs;
 use super::lightmap::refuse_what_cannot_be_baked;
 use super::reuse::{FIRST_PATHS, FirstPass, Place};
 use super::sites::{Site, Sites};
@@ -12,16 +12,9 @@ use super::workers::Workers;
 use super::{BakeError, BakeSettings, BakeWarning, CancelToken};
 use crate::math::{combine, luminance, mix64};
 use crate::scene::Scene;
-use crate::trace::{Census, Compiled, Effect, EffectSet, Independent, Sobol, Tally, Tracer, Transport};
-use glam::Vec3;
+use crate::trace::{Census, Compiled, Effect, EffectSet, Independent, Sobol, Tracer, Transport};
 use std::num::NonZeroUsize;
 use std::time::Duration;
-
-/// How many starts may be refused for each one that is wanted, as in the bake.
-const PATIENCE: u64 = 8;
-
-/// Paths between two looks at the cancel switch.
-const CANCEL_INTERVAL: u64 = 64;
 
 /// Whose numbers say which texels are taken.
 const CHOICE: u64 = 0x7265_6365_6976;
@@ -42,59 +35,19 @@ pub(crate) struct Manner {
     pub(crate) numbers: Numbers,
 }
 
-/// Sums over one texel's paths so far, as luminance: run by run, as in the bake.
+/// Sums over one texel's paths so far.
 #[derive(Clone, Debug)]
-pub(crate) struct Sums {
-    key: u64,
-    /// Sum, and place in the sequence.
-    runs: [(f64, u64); REPLICATES as usize],
-    /// Paths of each run.
-    accepted: u64,
-}
+pub(crate) struct Sums(Runs);
 
 impl Sums {
-    fn means(&self) -> impl Iterator<Item = f64> {
-        self.runs.iter().map(|(sum, _)| sum / self.accepted.max(1) as f64)
-    }
-
     /// Mean luminance of E/π [cd/m²].
     pub(crate) fn mean(&self) -> f64 {
-        self.means().sum::<f64>() / f64::from(REPLICATES)
+        luminance(self.0.estimate().mean)
     }
 
     /// Variance of that mean, from how the runs differ [cd²/m⁴].
     pub(crate) fn variance(&self) -> f64 {
-        let (mean, count) = (self.mean(), f64::from(REPLICATES));
-        self.means().map(|run| (run - mean) * (run - mean)).sum::<f64>() / (count * (count - 1.0))
-    }
-
-    fn extend(
-        &mut self,
-        count: u32,
-        cancel: &CancelToken,
-        mut path: impl FnMut(u64, u64, Start) -> Option<Vec3>,
-    ) -> Option<()> {
-        let per_run = u64::from(count.div_ceil(REPLICATES));
-        for (number, (sum, index)) in self.runs.iter_mut().enumerate() {
-            let key = combine(self.key, number as u64);
-            let mut accepted = self.accepted;
-            while accepted < per_run {
-                if *index % CANCEL_INTERVAL == 0 && cancel.is_cancelled() {
-                    return None;
-                }
-                let start = if *index < PATIENCE * per_run { Start::Drawn } else { Start::Anywhere };
-                let value = path(key, *index, start);
-                *index += 1;
-                let Some(value) = value else { continue };
-                accepted += 1;
-                // What is no light counts as dark, as in the bake.
-                if value.is_finite() && value.min_element() >= 0.0 {
-                    *sum += luminance(value);
-                }
-            }
-        }
-        self.accepted = self.accepted.max(per_run);
-        Some(())
+        self.0.estimate().luminance_error.powi(2)
     }
 }
 
@@ -195,7 +148,7 @@ impl<'a> Receivers<'a> {
     /// Sums without any path. Those of salt 0 take the bake's own random numbers, and other salts take others.
     pub(crate) fn sums(&self, salt: u64) -> Vec<Sums> {
         let key = |key| if salt == 0 { key } else { combine(key, salt) };
-        let empty = |site: &Site| Sums { key: key(site.covered.key), runs: Default::default(), accepted: 0 };
+        let empty = |site: &Site| Sums(Runs::new(key(site.covered.key), None));
         self.sites.iter().map(empty).collect()
     }
 
@@ -212,17 +165,16 @@ impl<'a> Receivers<'a> {
         let work = self.workers.gather(
             &items,
             |&(site, sums), cancel| {
-                let (mut sums, mut tally) = (sums.clone(), Tally::default());
-                let transport = &manner.transport;
+                let (mut runs, transport) = (sums.0.clone(), &manner.transport);
                 match manner.numbers {
-                    Numbers::Sobol => sums.extend(count, cancel, |key, index, start| {
-                        site.sample(tracer, &Sobol::new(key, index), start, transport, &mut tally)
+                    Numbers::Sobol => runs.extend(count, Sobol::new, cancel, |numbers, start, tally| {
+                        site.sample(tracer, numbers, start, transport, tally)
                     })?,
-                    Numbers::Independent => sums.extend(count, cancel, |key, index, start| {
-                        site.sample(tracer, &Independent::new(key, index), start, transport, &mut tally)
+                    Numbers::Independent => runs.extend(count, Independent::new, cancel, |numbers, start, tally| {
+                        site.sample(tracer, numbers, start, transport, tally)
                     })?,
                 }
-                Some(sums)
+                Some(Sums(runs))
             },
             |_| None,
         )?;

@@ -9,7 +9,7 @@ use super::validity::{Footing, footings};
 use super::workers::Workers;
 use super::{BakeError, BakeSettings, BakeWarning, CancelToken, Layout};
 use crate::scene::{Scene, Subject};
-use crate::trace::{Dimensions, PathStart, Sampler, Tally, Tracer, Transport};
+use crate::trace::{Dimensions, PathStart, Sampler, Sobol, Tally, Tracer, Transport};
 use glam::{Vec2, Vec3};
 use std::collections::BTreeMap;
 
@@ -95,7 +95,9 @@ impl Site {
         transport: &Transport,
         cancel: &CancelToken,
     ) -> Option<()> {
-        runs.extend(count, cancel, |sobol, start, tally| self.sample(tracer, sobol, start, transport, tally))
+        runs.extend(count, Sobol::new, cancel, |sobol, start, tally| {
+            self.sample(tracer, sobol, start, transport, tally)
+        })
     }
 
     /// Memory that it holds, its estimate included [bytes].

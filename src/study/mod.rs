@@ -150,6 +150,11 @@ impl Study {
     pub fn curve(&self, technique: Technique) -> Option<&Curve> {
         self.curves.iter().find(|curve| curve.technique == technique)
     }
+
+    /// What a bake of so many paths does: they serve groups of texels where the scene has anything to share.
+    pub fn of_a_bake(&self) -> Technique {
+        if self.curve(Technique::Shared).is_some() { Technique::Shared } else { Technique::Mis }
+    }
 }
 
 /// Studies what accuracy costs for a scene.

@@ -52,7 +52,7 @@ impl Technique {
             Self::Shared => "shared paths (kiln bake --spp)".into(),
             Self::Reused => "fast mode".into(),
             Self::Adaptive => "adaptive (kiln bake --error)".into(),
-            Self::Denoised => "MIS, Sobol, denoised".into(),
+            Self::Denoised => "denoised (kiln bake)".into(),
         }
     }
 

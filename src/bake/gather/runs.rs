@@ -45,14 +45,15 @@ impl Runs {
         Self { key, clamp, runs, accepted: 0, tally: Tally::default(), not_light: 0 }
     }
 
-    /// Carries on until there are at least `count` paths in all. `path` gives one path's value for its numbers and
-    /// counts what it did, or refuses it; once too many have been refused it is asked for what cannot be
-    /// ([`Start::Anywhere`]). `None` if cancelled.
-    pub(in crate::bake) fn extend(
+    /// Carries on until there are at least `count` paths in all. `numbers` makes a path's numbers of a key and a place in
+    /// the sequence. `path` gives one path's value for its numbers and counts what it did, or refuses it; once too many
+    /// have been refused it is asked for what cannot be ([`Start::Anywhere`]). `None` if cancelled.
+    pub(in crate::bake) fn extend<N>(
         &mut self,
         count: u32,
+        numbers: impl Fn(u64, u64) -> N,
         cancel: &CancelToken,
-        mut path: impl FnMut(&Sobol, Start, &mut Tally) -> Option<Vec3>,
+        mut path: impl FnMut(&N, Start, &mut Tally) -> Option<Vec3>,
     ) -> Option<()> {
         let per_run = Self::per_run(count);
         for number in 0..REPLICATES {
@@ -61,13 +62,13 @@ impl Runs {
                 if self.runs[number as usize].index.is_multiple_of(CANCEL_INTERVAL) && cancel.is_cancelled() {
                     return None;
                 }
-                let (numbers, start) = self.next(number, per_run);
+                let (numbers, start) = self.next(number, per_run, &numbers);
                 let Some(value) = path(&numbers, start, &mut self.tally) else { continue };
                 accepted += 1;
                 self.add(number, value);
             }
         }
-        self.are(per_run);
+        self.have_all(per_run);
         Some(())
     }
 
@@ -84,7 +85,7 @@ impl Runs {
         start: impl Fn(&Sobol, Start) -> Option<T>,
     ) -> (T, Sobol) {
         loop {
-            let (numbers, kind) = self.next(number, per_run);
+            let (numbers, kind) = self.next(number, per_run, &Sobol::new);
             if let Some(start) = start(&numbers, kind) {
                 return (start, numbers);
             }
@@ -92,10 +93,10 @@ impl Runs {
     }
 
     /// The numbers of a run's next try, and whether it may be refused.
-    fn next(&mut self, number: u32, per_run: u64) -> (Sobol, Start) {
+    fn next<N>(&mut self, number: u32, per_run: u64, numbers: &impl Fn(u64, u64) -> N) -> (N, Start) {
         let run = &mut self.runs[number as usize];
         let start = if run.index < PATIENCE * per_run { Start::Drawn } else { Start::Anywhere };
-        let numbers = Sobol::new(combine(self.key, number.into()), run.index);
+        let numbers = numbers(combine(self.key, number.into()), run.index);
         run.index += 1;
         (numbers, start)
     }
@@ -117,8 +118,8 @@ impl Runs {
         run.sum += kept.as_dvec3();
     }
 
-    /// Says that each run has had so many paths.
-    pub(in crate::bake) fn are(&mut self, per_run: u64) {
+    /// Notes that all runs have had so many paths.
+    pub(in crate::bake) fn have_all(&mut self, per_run: u64) {
         self.accepted = self.accepted.max(per_run);
     }
 
@@ -186,10 +187,10 @@ mod tests {
             (v > 0.3).then(|| Vec3::new(u, u * u, 1.0))
         };
         let mut at_once = Runs::new(7, Some(0.8));
-        at_once.extend(512, &cancel, path).unwrap();
+        at_once.extend(512, Sobol::new, &cancel, path).unwrap();
         let mut carried_on = Runs::new(7, Some(0.8));
         for count in [64, 64, 100, 512] {
-            carried_on.extend(count, &cancel, path).unwrap();
+            carried_on.extend(count, Sobol::new, &cancel, path).unwrap();
         }
         let [a, b] = [&at_once, &carried_on].map(Runs::estimate);
         assert_eq!(format!("{a:?}"), format!("{b:?}"));

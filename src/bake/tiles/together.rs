@@ -62,7 +62,7 @@ pub(super) fn carry_on(
         }
     }
     for (_, runs) in group {
-        runs.are(per_run);
+        runs.have_all(per_run);
     }
     Some(())
 }

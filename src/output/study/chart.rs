@@ -56,6 +56,14 @@ impl Subject {
         }
     }
 
+    /// The technique that a bake comes nearest to, of those that are shown.
+    fn of_a_bake(self, study: &Study) -> Technique {
+        match self {
+            Self::Time | Self::Paths => study.of_a_bake(),
+            Self::Bounces => Technique::Mis,
+        }
+    }
+
     fn across(self, point: &Point) -> f64 {
         match self {
             Self::Paths => f64::from(point.paths),
@@ -91,7 +99,7 @@ impl<'a> Chart<'a> {
             .collect();
         // What a bake does comes last, on top.
         curves.sort_by_key(|curve| {
-            (curve.technique == Technique::Shared, curve.technique == Technique::Mis, curve.technique)
+            (curve.technique == study.of_a_bake(), curve.technique == Technique::Mis, curve.technique)
         });
         let is_told = match subject {
             Subject::Time | Subject::Paths => !curves.is_empty(),
@@ -268,7 +276,7 @@ impl Chart<'_> {
             plot.line(&[[x + 7.0, *y], [width + 2.0, label], [width + 10.0, label]], colour, 0.7)?;
             plot.mark(mark, [width + 15.0, label], colour)?;
             let words = Words::new(LABEL).colour(colour);
-            let words = if curve.technique == Technique::Mis { words.bold() } else { words };
+            let words = if curve.technique == self.subject.of_a_bake(self.study) { words.bold() } else { words };
             plot.text(self.subject.label(curve.technique), [width + 24.0, label], &words)?;
         }
         Ok(())

@@ -41,7 +41,7 @@ fn plain(name: &str) -> String {
 pub(super) fn answer(study: &Study) -> String {
     let cost = |technique| study.curve(technique).and_then(|curve| curve.price(ASKED));
     let texels = grouped(study.conditions.texels as f64);
-    let Some(own) = cost(Technique::Mis).and_then(|cost| Some((cost, cost.seconds()?))) else {
+    let Some(own) = cost(study.of_a_bake()).and_then(|cost| Some((cost, cost.seconds()?))) else {
         return format!("What 1 % costs on these {texels} texels is not known: the study was too short.");
     };
     let mut text = format!("1 % costs {} of processor time on these {texels} texels", about(own.0, own.1));
@@ -55,7 +55,7 @@ pub(super) fn answer(study: &Study) -> String {
     if let Some((technique, rival, seconds)) = rival {
         let _ = write!(text, "; {} takes {}", technique.name(), about(rival, seconds));
     }
-    if let Some(slope) = study.curve(Technique::Mis).and_then(|curve| curve.slope) {
+    if let Some(slope) = study.curve(study.of_a_bake()).and_then(|curve| curve.slope) {
         let _ = write!(text, ". The error falls as paths to the power {}", signed(slope.value));
     }
     text + "."
@@ -86,7 +86,7 @@ fn prices(study: &Study) -> String {
     for curve in study.curves.iter().filter(|curve| !matches!(curve.technique, Technique::Capped(_))) {
         let cells: Vec<String> = curve.prices.iter().map(|price| cell(price.cost)).collect();
         let name = capital(&curve.technique.name());
-        let name = if curve.technique == Technique::Mis { format!("**{name}**") } else { name };
+        let name = if curve.technique == study.of_a_bake() { format!("**{name}**") } else { name };
         let _ = writeln!(text, "| {name} | {} | {} |", cells.join(" | "), slope(curve.slope));
     }
     text.push_str(

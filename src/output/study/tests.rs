@@ -53,6 +53,7 @@ fn made_up() -> Study {
             curve(Technique::Naive, [0.2, 1.9, -0.5]),
             curve(Technique::Light, [0.4, 0.17, -0.57]),
             curve(Technique::Independent, [0.4, 0.165, -0.5]),
+            curve(Technique::Shared, [0.9, 0.08, -0.6]),
             curve(Technique::Capped(0), [0.1, 0.5, 0.0]),
             curve(Technique::Capped(4), [0.3, 0.05, 0.0]),
             curve(Technique::Denoised, [0.9, 0.05, -0.3]),
@@ -109,7 +110,14 @@ fn the_page_has_all_that_it_links_to_and_links_to_all() {
         page.starts_with("# What accuracy costs: a\\_scene.glb\n\n**1 % costs about 100 s (extrapolated)"),
         "{page}"
     );
-    for part in ["−0.60 ± 0.01", "direct light only | 45 % | 50 %", "area-lights | 50 % | 100 %", "cam\\|era"] {
+    for part in [
+        "| **Shared paths (kiln bake --spp)** |",
+        "| MIS, Sobol |",
+        "−0.60 ± 0.01",
+        "direct light only | 45 % | 50 %",
+        "area-lights | 50 % | 100 %",
+        "cam\\|era",
+    ] {
         assert!(page.contains(part), "{part}: {page}");
     }
     // Rows of a table are as long as its head.

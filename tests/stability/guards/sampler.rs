@@ -89,8 +89,8 @@ pub static KEY_OF_REPLICATE: Guard = Guard {
            1997)",
     edits: &[Edit {
         file: "src/bake/gather/runs.rs",
-        text: "let numbers = Sobol::new(combine(self.key, number.into()), run.index);",
-        instead: "let numbers = Sobol::new(combine(self.key, (number / 8).into()), run.index);",
+        text: "let numbers = numbers(combine(self.key, number.into()), run.index);",
+        instead: "let numbers = numbers(combine(self.key, (number / 8).into()), run.index);",
     }],
 };
 
