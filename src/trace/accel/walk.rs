@@ -122,6 +122,7 @@ impl Walk<'_> {
                     let mut first = u64::MAX;
                     for lane in Bits(entered) {
                         let mut key = open(enter[lane], node.children[lane]);
+                        self.tree.prefetch(node.children[lane]);
                         if first == u64::MAX {
                             first = key;
                             continue;
@@ -219,6 +220,7 @@ impl Walk<'_> {
                 let (entered, _) = slabs.enter(lanes, node, distance);
                 for lane in Bits(entered) {
                     stack[usize::from(depth)] = node.children[lane];
+                    self.tree.prefetch(node.children[lane]);
                     depth += 1;
                 }
             }

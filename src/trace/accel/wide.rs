@@ -3,6 +3,7 @@
 use super::lanes::LANES;
 use super::packet::Packet;
 use glam::Vec3;
+use prefetch_index::prefetch_index;
 
 /// Set in the number of a child that is a packet.
 pub(super) const LEAF: u32 = 1 << 31;
@@ -18,7 +19,7 @@ const _: () = assert!((LEVELS as usize + 10) * (LANES - 1) < STACK);
 
 /// Eight boxes.
 #[derive(Clone, Debug)]
-#[repr(C, align(32))]
+#[repr(C, align(64))]
 pub(super) struct Node {
     /// Low and high sides, by axis and child. Those of no child are turned inside out, which nothing enters.
     pub(super) sides: [[[f32; LANES]; 3]; 2],
@@ -148,6 +149,19 @@ impl Tree {
             .iter()
             .flat_map(move |packet| -> Vec<_> { lanes(packet) })
             .filter(|(_, number)| *number != u32::MAX)
+    }
+
+    /// Has the memory of a child brought nearer: it is needed soon, and where trees are large it is far away.
+    #[inline(always)]
+    pub(super) fn prefetch(&self, child: u32) {
+        if child & LEAF != 0 {
+            self.packets[(child ^ LEAF) as usize].prefetch();
+        } else {
+            for [x, _, z] in &self.nodes[child as usize].sides {
+                prefetch_index(x, 0);
+                prefetch_index(z, 0);
+            }
+        }
     }
 
     /// Memory that it holds [bytes].
