@@ -94,17 +94,18 @@ pub(super) struct Hit {
 }
 
 /// [`Walk::nearest`].
-struct Nearest<'a> {
+struct Nearest<'a, F: Fn(u32)> {
     walk: Walk<'a>,
     end: f32,
+    tell: F,
 }
 
-impl InLanes for Nearest<'_> {
+impl<F: Fn(u32)> InLanes for Nearest<'_, F> {
     type Output = Option<Met>;
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> Option<Met> {
-        self.walk.nearest(lanes, self.end)
+        self.walk.nearest(lanes, self.end, self.tell)
     }
 }
 
@@ -147,19 +148,27 @@ impl Accel {
 
     /// The nearest triangle that the ray meets before `t_max`, from either side. The direction is a unit vector.
     pub(super) fn closest(&self, origin: Vec3, direction: Vec3, t_max: f32) -> Option<Hit> {
-        if self.is_far(origin) {
-            let (nearer, passed) = self.come_nearer(origin, direction)?;
-            let hit = self.closest_from_near(nearer, direction, (f64::from(t_max) - passed) as f32)?;
-            return Some(Hit { t: (passed + f64::from(hit.t)) as f32, ..hit });
-        }
-        self.closest_from_near(origin, direction, t_max)
+        self.closest_telling(origin, direction, t_max, |_| ())
     }
 
-    fn closest_from_near(&self, origin: Vec3, direction: Vec3, t_max: f32) -> Option<Hit> {
+    /// The same. Tells the number of each triangle on the way that is the nearest so far, so that what belongs to it can
+    /// be fetched while the search goes on.
+    #[inline]
+    pub(super) fn closest_telling(&self, origin: Vec3, direction: Vec3, t_max: f32, tell: impl Fn(u32)) -> Option<Hit> {
+        if self.is_far(origin) {
+            let (nearer, passed) = self.come_nearer(origin, direction)?;
+            let hit = self.closest_from_near(nearer, direction, (f64::from(t_max) - passed) as f32, tell)?;
+            return Some(Hit { t: (passed + f64::from(hit.t)) as f32, ..hit });
+        }
+        self.closest_from_near(origin, direction, t_max, tell)
+    }
+
+    #[inline]
+    fn closest_from_near(&self, origin: Vec3, direction: Vec3, t_max: f32, tell: impl Fn(u32)) -> Option<Hit> {
         let (origin, end) = (origin * self.scale, t_max * self.scale);
         let ray = ShearedRay::new(origin, direction);
         let walk = Walk { tree: &self.tree, ray: &ray, start: End { position: origin, inwards: direction } };
-        self.level.run(Nearest { walk, end }).map(|met| self.hit(met))
+        self.level.run(Nearest { walk, end, tell }).map(|met| self.hit(met))
     }
 
     #[inline]

@@ -1,6 +1,6 @@
 //! A scene compiled for rays.
 
-use super::accel::Accel;
+use super::accel::{Accel, Hit};
 use super::attributes::Attributes;
 use super::bsdf::AlbedoTables;
 use super::effects::{Effect, EffectSet};
@@ -14,6 +14,7 @@ use super::texture::Decoded;
 use super::traced::TracedFromWorld;
 use super::transport::Transport;
 use glam::{DVec3, Vec3};
+use prefetch_index::prefetch_index;
 use std::sync::{Arc, OnceLock};
 
 /// No emitter.
@@ -79,8 +80,17 @@ impl Tracer {
     /// The nearest surface that a ray from `origin` [m] in the unit `direction` meets, from either side. The origin may
     /// be any distance away; what the ray meets is then as sure as an f64 along its way, 2⁻⁵² of that distance.
     pub fn closest_hit(&self, origin: Vec3, direction: Vec3) -> Option<RayHit> {
-        let hit = self.accel.closest(self.traced_from_world.point(origin), direction, f32::INFINITY)?;
+        let hit = self.nearest(self.traced_from_world.point(origin), direction)?;
         Some(RayHit { distance: hit.t, normal: self.normal(hit.triangle) })
+    }
+
+    /// The nearest triangle that a ray meets, in the traced frame. What a path asks of it is on its way from memory.
+    #[inline]
+    pub(super) fn nearest(&self, origin: Vec3, direction: Vec3) -> Option<Hit> {
+        self.accel.closest_telling(origin, direction, f32::INFINITY, |triangle| {
+            self.triangles[triangle as usize].prefetch();
+            prefetch_index(&self.surface_of, triangle as usize);
+        })
     }
 
     /// Whether no surface lies between two points [m].

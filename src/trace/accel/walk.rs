@@ -98,9 +98,10 @@ impl Walk<'_> {
         !self.tree.nodes.is_empty() && !(self.start.position + self.start.inwards).is_nan()
     }
 
-    /// The nearest triangle before `end`; of several at the same distance, that of the smallest number.
+    /// The nearest triangle before `end`; of several at the same distance, that of the smallest number. Tells the number
+    /// of each that is the nearest so far.
     #[inline(always)]
-    pub(super) fn nearest<L: Lanes>(self, lanes: L, end: f32) -> Option<Met> {
+    pub(super) fn nearest<L: Lanes>(self, lanes: L, end: f32, tell: impl Fn(u32)) -> Option<Met> {
         let (slabs, ray) = (Slabs::new(lanes, &self.start), PacketRay::new(lanes, self.ray));
         // Nothing has a smaller number than 0: what lies at the end itself is not before it.
         let mut nearest = Met { t: end, triangle: 0, barycentric: [0.0; 2] };
@@ -112,7 +113,10 @@ impl Walk<'_> {
         }
         loop {
             if current & LEAF != 0 {
-                found |= self.nearest_of(lanes, &ray, &self.tree.packets[(current ^ LEAF) as usize], &mut nearest);
+                if self.nearest_of(lanes, &ray, &self.tree.packets[(current ^ LEAF) as usize], &mut nearest) {
+                    found = true;
+                    tell(nearest.triangle);
+                }
             } else {
                 let node = &self.tree.nodes[current as usize];
                 let (entered, enter) = slabs.enter(lanes, node, nearest.t);

@@ -217,7 +217,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         };
         let (hit, surface) = loop {
             self.tally.rays += 1;
-            let hit = tracer.accel.closest(origin, ray.direction, f32::INFINITY);
+            let hit = tracer.nearest(origin, ray.direction);
             let end = hit.map_or(f32::INFINITY, |hit| hit.t);
             if ray.survival.is_some() && tracer.lights.has_passable() {
                 self.meet_sources(ray, origin, passed, end);
