@@ -6,6 +6,7 @@ use super::lanes::Lanes;
 use super::packet::{Crossings, Packet, PacketRay};
 use super::wide::{LEAF, Node, STACK, Tree};
 use crate::trace::triangle::{Crossing, ShearedRay};
+use arrayvec::ArrayVec;
 use glam::Vec3;
 
 /// A ray and the tree that it goes through.
@@ -106,8 +107,8 @@ impl Walk<'_> {
         // Nothing has a smaller number than 0: what lies at the end itself is not before it.
         let mut nearest = Met { t: end, triangle: 0, barycentric: [0.0; 2] };
         let mut found = false;
-        let mut stack = [0_u64; STACK];
-        let (mut depth, mut current) = (0_u8, 0);
+        let mut stack = ArrayVec::<u64, STACK>::new();
+        let mut current = 0;
         if !self.is_anywhere() {
             return None;
         }
@@ -122,7 +123,7 @@ impl Walk<'_> {
                 let (entered, enter) = slabs.enter(lanes, node, nearest.t);
                 if entered != 0 {
                     let enter = lanes.store(enter);
-                    let bottom = depth;
+                    let bottom = stack.len();
                     let mut first = u64::MAX;
                     for lane in Bits(entered) {
                         let mut key = open(enter[lane], node.children[lane]);
@@ -134,24 +135,20 @@ impl Walk<'_> {
                         if key < first {
                             std::mem::swap(&mut key, &mut first);
                         }
-                        let mut at = depth;
-                        while at > bottom && stack[usize::from(at - 1)] < key {
-                            stack[usize::from(at)] = stack[usize::from(at - 1)];
+                        let mut at = stack.len();
+                        stack.push(key);
+                        while at > bottom && stack[at - 1] < key {
+                            stack[at] = stack[at - 1];
                             at -= 1;
                         }
-                        stack[usize::from(at)] = key;
-                        depth += 1;
+                        stack[at] = key;
                     }
                     current = first as u32;
                     continue;
                 }
             }
             loop {
-                if depth == 0 {
-                    return found.then_some(nearest);
-                }
-                depth -= 1;
-                let key = stack[usize::from(depth)];
+                let Some(key) = stack.pop() else { return found.then_some(nearest) };
                 if f32::from_bits((key >> 32) as u32) <= nearest.t {
                     current = key as u32;
                     break;
@@ -199,8 +196,8 @@ impl Walk<'_> {
     pub(super) fn any<L: Lanes>(self, lanes: L, end: Option<(End, f32)>, mut stops: impl FnMut(Met) -> bool) -> bool {
         let (slabs, ray) = (Slabs::new(lanes, &self.start), PacketRay::new(lanes, self.ray));
         let distance = end.map_or(f32::INFINITY, |(_, distance)| distance);
-        let mut stack = [0_u32; STACK];
-        let (mut depth, mut current) = (0_u8, 0);
+        let mut stack = ArrayVec::<u32, STACK>::new();
+        let mut current = 0;
         if !self.is_anywhere() {
             return false;
         }
@@ -223,16 +220,12 @@ impl Walk<'_> {
                 let node = &self.tree.nodes[current as usize];
                 let (entered, _) = slabs.enter(lanes, node, distance);
                 for lane in Bits(entered) {
-                    stack[usize::from(depth)] = node.children[lane];
+                    stack.push(node.children[lane]);
                     self.tree.prefetch(node.children[lane]);
-                    depth += 1;
                 }
             }
-            if depth == 0 {
-                return false;
-            }
-            depth -= 1;
-            current = stack[usize::from(depth)];
+            let Some(next) = stack.pop() else { return false };
+            current = next;
         }
     }
 
