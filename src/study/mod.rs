@@ -50,7 +50,7 @@ const RECEIVERS_PER_SECOND: f64 = 4.0;
 const LEAST_RECEIVERS: usize = 256;
 
 /// Most texels of the lightmap for each second of the study: so many that some whole bakes fit.
-const TEXELS_PER_SECOND: f64 = 20.0;
+const TEXELS_PER_SECOND: f64 = 8.0;
 
 /// Fewest texels that a lightmap is made coarser for.
 const LEAST_TEXELS: f64 = 2000.0;

@@ -13,7 +13,7 @@ use std::time::Instant;
 pub const PICTURE_SIZE: u32 = 96;
 
 /// Weight of the pictures.
-pub(super) const WEIGHT: f64 = 14.0;
+pub(super) const WEIGHT: f64 = 26.0;
 
 /// Paths through each pixel.
 const COUNTS: [u32; 5] = [10, 100, 1000, 10_000, 100_000];

@@ -49,10 +49,10 @@ impl Technique {
             Self::Capped(0) => "direct light only".into(),
             Self::Capped(1) => "cut after 1 bounce".into(),
             Self::Capped(cap) => format!("cut after {cap} bounces"),
-            Self::Shared => "shared paths (kiln bake --spp)".into(),
+            Self::Shared => "shared paths (bake --spp)".into(),
             Self::Reused => "fast mode".into(),
-            Self::Adaptive => "adaptive (kiln bake --error)".into(),
-            Self::Denoised => "denoised (kiln bake)".into(),
+            Self::Adaptive => "adaptive (bake --error)".into(),
+            Self::Denoised => "denoised (bake)".into(),
         }
     }
 

@@ -93,8 +93,14 @@ fn prices(study: &Study) -> String {
         "\nProcessor time of the whole lightmap for a root mean square error of so many percent of the mean, by \
          luminance. *Italic*: beyond what was measured, by the slope. Slope: of log error over log paths, with its \
          standard error; −0.50 is plain Monte Carlo. The denoiser's time is that of all repair, and blur that it leaves \
-         is in its error.",
+         is in its error. Bakes share paths between texels where they can; all others are each texel for itself.",
     );
+    if study.curve(Technique::Adaptive).is_some() {
+        text.push_str(
+            " An adaptive bake holds every texel, dark ones too, to a share of its own value, which this table, going by \
+             the mean of all, does not ask for.",
+        );
+    }
     text
 }
 

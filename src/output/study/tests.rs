@@ -111,7 +111,7 @@ fn the_page_has_all_that_it_links_to_and_links_to_all() {
         "{page}"
     );
     for part in [
-        "| **Shared paths (kiln bake --spp)** |",
+        "| **Shared paths (bake --spp)** |",
         "| MIS, Sobol |",
         "−0.60 ± 0.01",
         "direct light only | 45 % | 50 %",
