@@ -12,6 +12,7 @@ use super::clearcoat::Clearcoat;
 use super::dielectric::Dielectric;
 use super::diffuse_transmission::DiffuseTransmission;
 use super::fresnel::Schlick;
+use super::look::Look;
 use super::specular::{Seen, Specular};
 use super::thin::Pane;
 use super::{BsdfSample, Lambert, Proposal, Response};
@@ -165,6 +166,20 @@ impl<'a> Standard<'a> {
     #[inline]
     pub(super) fn transmits(&self) -> bool {
         self.clear < 1.0 && self.diffuser.albedo != Vec3::ZERO || self.clear > 0.0 && self.glass.is_smooth_lobe()
+    }
+
+    /// How what lies below all coats looks; `None` if nothing is there.
+    #[inline]
+    pub(super) fn look(&self) -> Option<Look<'a>> {
+        let is_black = self.diffuse.albedo == Vec3::ZERO && self.diffuser.albedo == Vec3::ZERO;
+        (self.clear < 1.0 && !is_black).then_some(Look::under(self.specular, self.coat))
+    }
+
+    /// What that scatters, times |cos θi| [1/sr], less its look.
+    #[inline]
+    pub(super) fn matt(&self, wi: Vec3) -> Vec3 {
+        let base = if wi.z > 0.0 { self.diffuse.evaluate(wi) } else { self.diffuser.evaluate(wi) };
+        (1.0 - self.clear) * base * Look::under(self.specular, self.coat).from(wi.z.abs()) / self.average_left
     }
 
     #[inline]
