@@ -91,7 +91,9 @@ impl Tracer {
     /// there are [`MOST_RECEIVERS`] at most.
     pub(crate) fn share(&self, starts: &[PathStart], own: usize, found: &Found, light: &mut [Vec3], tally: &mut Tally) {
         light[own] += found.alone;
-        let Some(Shared { whence, radiance, own: own_look }) = found.shared.filter(|shared| shared.radiance != Vec3::ZERO) else {
+        let Some(Shared { whence, radiance, own: own_look }) =
+            found.shared.filter(|shared| shared.radiance != Vec3::ZERO)
+        else {
             return;
         };
         // A path that has lost its number is to cost nobody else one.
