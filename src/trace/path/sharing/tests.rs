@@ -14,8 +14,8 @@ use yard::{YARDS, Yard, receivers};
 
 const REPLICATES: u64 = 16;
 
-/// How far apart the means may be, relative.
-const TOLERANCE: f64 = 0.025;
+/// How far apart the means may be, relative to that of all receivers.
+const TOLERANCE: f64 = 0.015;
 
 /// The light of all receivers by one path of each.
 fn one_of_each(
@@ -33,12 +33,12 @@ fn one_of_each(
     light
 }
 
-/// How far the means of shared paths are from those of the receivers' own, receiver by receiver: relative difference
-/// and standard error. Both are of the same paths, so that what is not shared is no noise between them.
+/// How far the means of shared paths are from those of the receivers' own, receiver by receiver: difference and standard
+/// error over the mean of all receivers. Both are of the same paths, so that what is not shared is no noise between them.
 fn differences(tracer: &Tracer, paths: u64, share: impl Fn(&[PathStart], usize, &Found) -> Vec<Vec3>) -> Vec<[f64; 2]> {
     let starts = receivers(tracer);
     let alone = Transport { sharing: Sharing::Alone, ..Transport::default() };
-    let mut all = vec![(Vec::new(), 0.0); starts.len()];
+    let (mut all, mut light) = (vec![Vec::new(); starts.len()], 0.0);
     for replicate in 0..REPLICATES {
         let (mut shared, mut own) = (vec![0.0_f64; starts.len()], vec![0.0_f64; starts.len()]);
         for index in 0..paths {
@@ -52,13 +52,13 @@ fn differences(tracer: &Tracer, paths: u64, share: impl Fn(&[PathStart], usize, 
             }
         }
         for (all, (shared, own)) in all.iter_mut().zip(shared.into_iter().zip(own)) {
-            all.0.push(shared - own);
-            all.1 += own / REPLICATES as f64;
+            all.push(shared - own);
+            light += own / (REPLICATES as usize * starts.len()) as f64;
         }
     }
-    let relative = |(differences, own): &(Vec<f64>, f64)| {
+    let relative = |differences: &Vec<f64>| {
         let (off, error) = mean_and_error(differences);
-        [off / own, error / own]
+        [off / light, error / light]
     };
     all.iter().map(relative).collect()
 }
