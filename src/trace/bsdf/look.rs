@@ -12,6 +12,12 @@ use super::specular::Specular;
 use super::{Bsdf, Density};
 use glam::Vec3;
 
+/// The least of a matt part over all else that a surface scatters, to be worth a ray to every other receiver. Efficiency
+/// over that of receivers alone, 1 / (mean square relative error × processor seconds), in Cornell boxes whose walls are
+/// metal by 0.3, 0.4, 0.5 and 0.9, of which about 0.6, 0.46, 0.35 and 0.04 is matt: 1.4, 1.1, 0.96 and 0.68; at a
+/// roughness of 0.9 instead of 0.5, by 0.5 and 0.7, 1.7 and 1.0.
+const LEAST: f32 = 0.5;
+
 /// How the matt part looks from different sides: l. By the coats above it; alike from everywhere if there are none.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::trace) struct Look<'a>(Option<(Specular<'a>, Clearcoat<'a>)>);
@@ -36,14 +42,14 @@ impl<'a> Look<'a> {
 }
 
 impl<'a> Bsdf<'a> {
-    /// How its matt part looks; `None` if it has none.
+    /// How its matt part looks; `None` if it has none that is worth to be told apart.
     #[inline]
     pub(in crate::trace) fn look(&self) -> Option<Look<'a>> {
         match self {
             Self::None | Self::Mirror(_) | Self::Refraction(_) => None,
             Self::Lambert(_) => Some(Look::EVEN),
             Self::Standard(standard) => standard.look(),
-            Self::Phong(phong) => (phong.diffuse != Vec3::ZERO).then_some(Look::EVEN),
+            Self::Phong(phong) => is_worth(phong.diffuse, phong.specular).then_some(Look::EVEN),
         }
     }
 
@@ -68,4 +74,10 @@ impl<'a> Bsdf<'a> {
             Density::Delta => Vec3::ZERO,
         }
     }
+}
+
+/// Whether a surface's matt part is worth to be told apart from the rest, by their albedos.
+#[inline]
+pub(super) fn is_worth(matt: Vec3, rest: Vec3) -> bool {
+    matt != Vec3::ZERO && matt.element_sum() >= LEAST * rest.element_sum()
 }

@@ -12,7 +12,7 @@ use super::clearcoat::Clearcoat;
 use super::dielectric::Dielectric;
 use super::diffuse_transmission::DiffuseTransmission;
 use super::fresnel::Schlick;
-use super::look::Look;
+use super::look::{Look, is_worth};
 use super::specular::{Seen, Specular};
 use super::thin::Pane;
 use super::{BsdfSample, Lambert, Proposal, Response};
@@ -168,11 +168,13 @@ impl<'a> Standard<'a> {
         self.clear < 1.0 && self.diffuser.albedo != Vec3::ZERO || self.clear > 0.0 && self.glass.is_smooth_lobe()
     }
 
-    /// How what lies below all coats looks; `None` if nothing is there.
+    /// How what lies below all coats looks; `None` if there is too little of it.
     #[inline]
     pub(super) fn look(&self) -> Option<Look<'a>> {
-        let is_black = self.diffuse.albedo == Vec3::ZERO && self.diffuser.albedo == Vec3::ZERO;
-        (self.clear < 1.0 && !is_black).then_some(Look::under(self.specular, self.coat))
+        let opaque = 1.0 - self.clear;
+        let matt = opaque * (self.diffuse.albedo + self.diffuser.albedo) * self.average_left;
+        let rest = opaque * (Vec3::ONE - self.average_left) + self.clear;
+        is_worth(matt, rest).then_some(Look::under(self.specular, self.coat))
     }
 
     /// What that scatters, times |cos θi| [1/sr], less its look.

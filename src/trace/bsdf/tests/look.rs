@@ -47,12 +47,14 @@ fn off(bsdf: &Bsdf<'_>, look: impl Fn(f32) -> Vec3) -> [f32; 2] {
 
 #[test]
 fn the_matt_part_is_never_more_than_the_whole() {
+    let mut count = 0;
     for metallic in [0.0, 0.5] {
         for roughness in [0.0, 0.4, 1.0] {
             for [reflectance, varnish] in [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [0.5, 1.0]] {
                 for [clear, diffuser] in [[0.0, 0.0], [0.0, 0.4], [0.6, 0.4]] {
                     let bsdf = standard([metallic, roughness, reflectance, clear, diffuser, varnish]);
-                    let look = bsdf.look().expect("something matt");
+                    let Some(look) = bsdf.look() else { continue };
+                    count += 1;
                     let [above, below] = off(&bsdf, |cos| look.from(cos));
                     assert!(above < 1e-5, "{bsdf:?}: {above}");
                     // Nothing else is spread out: all of it is matt, but for what a varnish and its product differ by.
@@ -63,6 +65,7 @@ fn the_matt_part_is_never_more_than_the_whole() {
             }
         }
     }
+    assert!(count > 40, "{count}");
     let phong = Bsdf::Phong(Phong { diffuse: Vec3::splat(0.5), specular: Vec3::splat(0.3), exponent: 9.0 });
     let look = phong.look().expect("something matt");
     let [above, below] = off(&phong, |cos| look.from(cos));

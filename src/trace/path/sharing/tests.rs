@@ -15,7 +15,7 @@ use yard::{YARDS, Yard, receivers};
 const REPLICATES: u64 = 16;
 
 /// How far apart the means may be, relative to that of all receivers.
-const TOLERANCE: f64 = 0.015;
+const TOLERANCE: f64 = 0.01;
 
 /// The light of all receivers by one path of each.
 fn one_of_each(
@@ -72,7 +72,6 @@ fn tracers_own(tracer: &Tracer, starts: &[PathStart], own: usize, found: &Found)
 fn has_the_mean_of_the_receivers_own(yard: Yard) {
     let tracer = yard.tracer();
     let all = differences(&tracer, 8192, |starts, own, found| tracers_own(&tracer, starts, own, found));
-    println!("{yard:?}: {all:.4?}");
     for (number, [off, error]) in all.into_iter().enumerate() {
         assert_eq!(mean_within(off, error, 0.0, TOLERANCE), Ok(()), "{yard:?}, receiver {number}");
     }
@@ -111,7 +110,6 @@ fn rejects(yard: Yard, paths: u64, faults: &[Fault]) {
         let all = verdict(fault);
         let is_rejected = all.iter().any(|&[off, error]| mean_within(off, error, 0.0, TOLERANCE).is_err());
         let worst = worst(&all);
-        println!("{yard:?}, {fault:?}: {worst:.1} standard errors, {all:.3?}");
         assert!(is_rejected && worst > 8.0, "{yard:?}, {fault:?}: {worst} standard errors");
     }
     let without = worst(&verdict(Fault::None));
@@ -125,7 +123,7 @@ fn planted_faults_are_rejected() {
 
 #[test]
 fn planted_faults_of_gloss_are_rejected() {
-    rejects(Yard::Varnished, 4096, &[Fault::NoAngle, Fault::NoCosineThere, Fault::NoVisibility]);
+    rejects(Yard::Varnished, 4096, &[Fault::NoAngle]);
 }
 
 #[test]
@@ -160,7 +158,6 @@ fn a_path_s_light_is_dealt_out_whole() {
                 light
             });
         }
-        println!("{yard:?}: {surfaces} {skies}");
         assert!(surfaces > 1000 && skies > 200, "{yard:?}: {surfaces} {skies}");
     }
 }
@@ -186,6 +183,7 @@ fn some_paths_serve_their_own_receiver_alone() {
                 unshared += u32::from(shared.shared.is_none());
             }
         }
-        println!("{yard:?}: {parted} parted, {unshared} alone");
+        let has_alone = !matches!(yard, Yard::Glossy | Yard::Metallic | Yard::Varnished | Yard::Phong);
+        assert!(parted > 500 && (unshared > 0 || !has_alone), "{yard:?}: {parted} parted, {unshared} alone");
     }
 }
