@@ -1,6 +1,7 @@
 //! Receiver samples per second of processor time on one thread, a receiver sample being one path from one texel, for
 //! each estimator; and, at the end, what matters: efficiency, 1 / (relative RMSE² × processor seconds), the relative
-//! RMSE being the root of the mean square error over the mean, against the reference lightmap of the Cornell box.
+//! RMSE being the root of the mean square error over the mean, against the reference lightmap of the Cornell box; and the
+//! same of texels that share their paths over texels that do not, in boxes of other materials.
 
 mod hall;
 
@@ -8,10 +9,11 @@ mod hall;
 mod glb;
 
 use bevy_kiln::bake::{BakeSettings, CancelToken, Denoise, Goal, Layout, Lightmap, bake_lightmap};
-use bevy_kiln::scene::Scene;
-use bevy_kiln::trace::{Estimator, Transport};
+use bevy_kiln::scene::{Alpha, Material, Scattering, Scene, Standard};
+use bevy_kiln::trace::{Estimator, Sharing, Transport};
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
+use glam::Vec3;
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 use std::path::Path;
@@ -119,5 +121,93 @@ fn efficiency(_: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, receiver_samples, efficiency);
+/// Paths per texel of the bakes of other materials, and their side [texels].
+const OTHER_SAMPLES: u32 = 64;
+const OTHER_SIZE: u32 = 96;
+
+/// The Cornell box of other materials.
+fn boxes() -> Vec<(&'static str, Scene)> {
+    let of = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = glb::load("cornell");
+        change(&mut scene);
+        scene
+    };
+    let standard = |standard: Standard| {
+        of(&move |scene| {
+            let walls = scene.materials.iter_mut().filter(|material| material.emitted_radiance == Vec3::ZERO);
+            walls.for_each(|material| material.scattering = Scattering::Standard(Box::new(standard.clone())));
+        })
+    };
+    let metal = |metallic: f32| standard(Standard { metallic, ..Standard::default() });
+    let (varnish, smooth) = (
+        Standard { clearcoat: 1.0, ..Standard::default() },
+        Standard { perceptual_roughness: 0.0, ..Standard::default() },
+    );
+    let block = |change: fn(&mut Material)| {
+        of(&move |scene| {
+            let block = scene.instances.iter().position(|instance| instance.name == "tall_block").expect("a block");
+            let mut material = scene.materials[scene.instances[block].material].clone();
+            change(&mut material);
+            scene.instances[block].material = scene.materials.len();
+            scene.materials.push(material);
+        })
+    };
+    let mirror = |material: &mut Material| material.scattering = Scattering::Mirror;
+    let gauze = |material: &mut Material| {
+        (material.alpha, material.base_colour.w) = (Alpha::Blend, 0.5);
+    };
+    vec![
+        ("matt", of(&|_| ())),
+        ("plastic", standard(Standard::default())),
+        ("polished", standard(smooth)),
+        ("varnished", standard(varnish)),
+        ("half metal", metal(0.5)),
+        ("metal by 0.9", metal(0.9)),
+        ("metal", metal(1.0)),
+        ("a mirror block", block(mirror)),
+        ("a gauze block", block(gauze)),
+    ]
+}
+
+/// Mean square difference of two bakes of different seeds over twice the square of the mean, which is the error of one;
+/// and the processor time of one [s].
+fn error_of_one(scene: &Scene, sharing: Sharing, pair: u64) -> [f64; 2] {
+    let bakes = [0, 1].map(|half| {
+        let mut settings = settings(Estimator::Mis, Layout::Shared { size: OTHER_SIZE }, OTHER_SAMPLES);
+        (settings.transport.sharing, settings.transport.seed) = (sharing, 2 * pair + half);
+        bake(scene, &settings)
+    });
+    let [a, b] = &bakes;
+    let covered = (0..a.pages[0].raw.len()).filter(|&index| a.pages[0].coverage[index] > 0.99);
+    let of_one = |index: usize| [a, b].map(|bake| f64::from(bake.pages[0].raw[index].y));
+    let sums = covered.map(of_one).fold([0.0; 3], |[squares, light, count], [a, b]| {
+        [squares + 0.5 * (a - b).powi(2), light + 0.5 * (a + b), count + 1.0]
+    });
+    let seconds = 0.5 * bakes.iter().map(|bake| bake.report.cpu_seconds).sum::<f64>();
+    [sums[0] / sums[2] / (sums[1] / sums[2]).powi(2), seconds]
+}
+
+fn sharing(_: &mut Criterion) {
+    eprintln!("\nCornell boxes, {OTHER_SIZE}², {OTHER_SAMPLES} paths per texel, one thread, pairs of seeds");
+    eprintln!("box              RMSE alone   shared   seconds alone   shared   gain in efficiency, pair by pair");
+    for (name, scene) in boxes() {
+        let pairs: Vec<[[f64; 2]; 2]> = (0..3)
+            .map(|pair| [Sharing::Alone, Sharing::Group].map(|sharing| error_of_one(&scene, sharing, pair)))
+            .collect();
+        let mean = |of: usize, what: usize| pairs.iter().map(|pair| pair[of][what]).sum::<f64>() / pairs.len() as f64;
+        let gain = |[alone, shared]: &[[f64; 2]; 2]| format!("{:.2}", alone[0] * alone[1] / (shared[0] * shared[1]));
+        let gains: Vec<String> = pairs.iter().map(gain).collect();
+        let [alone, shared] = [0, 1].map(|of| [mean(of, 0).sqrt(), mean(of, 1)]);
+        eprintln!(
+            "{name:14}   {:10.4}   {:6.4}   {:13.2}   {:6.2}   {}",
+            alone[0],
+            shared[0],
+            alone[1],
+            shared[1],
+            gains.join(" ")
+        );
+    }
+}
+
+criterion_group!(benches, receiver_samples, efficiency, sharing);
 criterion_main!(benches);

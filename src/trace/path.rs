@@ -63,7 +63,7 @@ impl Tracer {
         sampler: &impl Sampler,
         transport: &Transport,
         tally: &mut Tally,
-    ) -> Found {
+    ) -> Found<'_> {
         with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).find(start))
     }
 

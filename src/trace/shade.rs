@@ -175,15 +175,20 @@ impl Tracer {
     /// The frame in which a surface scatters, around its shading normal on the side of `wo`. `geometric` is the flat
     /// normal on that side, `side` as in [`Self::bsdf`].
     pub(super) fn shading_frame(&self, surface: &Surface, place: Place, geometric: Vec3, wo: Vec3, side: f32) -> Frame {
+        let normal = self.shading_normal(surface, place, geometric, side);
+        // A normal that looks away from the viewer shows a side that cannot be seen; the flat one is then the truth.
+        if normal.dot(wo) > 0.0 && normal.dot(geometric) > 0.0 { Frame::new(normal) } else { Frame::new(geometric) }
+    }
+
+    /// The normal of that frame, if it does not look away from who sees the surface.
+    pub(super) fn shading_normal(&self, surface: &Surface, place: Place, geometric: Vec3, side: f32) -> Vec3 {
         // Which way a mesh's normals point is often wrong; which side the viewer is on is known.
         let towards_viewer = |n: Vec3| if n.dot(geometric) < 0.0 { -n } else { n };
         let smooth = self.attributes.normal(place.triangle, place.barycentric).map_or(geometric, towards_viewer);
-        let normal = match surface.normal_map {
+        match surface.normal_map {
             Some(_) => self.mapped_normal(surface, place, smooth, side),
             None => smooth,
-        };
-        // A normal that looks away from the viewer shows a side that cannot be seen; the flat one is then the truth.
-        if normal.dot(wo) > 0.0 && normal.dot(geometric) > 0.0 { Frame::new(normal) } else { Frame::new(geometric) }
+        }
     }
 
     /// The frame of a diffuse surface that a camera sees: around the smooth normal, as its lightmap has it.

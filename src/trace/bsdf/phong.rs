@@ -52,6 +52,12 @@ impl Phong {
         self.lambert().evaluate(wi) + self.specular * glossy
     }
 
+    /// The same of the diffuse lobe.
+    #[inline]
+    pub(super) fn matt(&self, wi: Vec3) -> Vec3 {
+        self.lambert().evaluate(wi)
+    }
+
     /// Density of `wi` [1/sr].
     #[inline]
     pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {

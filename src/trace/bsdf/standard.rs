@@ -12,6 +12,7 @@ use super::clearcoat::Clearcoat;
 use super::dielectric::Dielectric;
 use super::diffuse_transmission::DiffuseTransmission;
 use super::fresnel::Schlick;
+use super::look::{Look, is_worth};
 use super::specular::{Seen, Specular};
 use super::thin::Pane;
 use super::{BsdfSample, Lambert, Proposal, Response};
@@ -165,6 +166,22 @@ impl<'a> Standard<'a> {
     #[inline]
     pub(super) fn transmits(&self) -> bool {
         self.clear < 1.0 && self.diffuser.albedo != Vec3::ZERO || self.clear > 0.0 && self.glass.is_smooth_lobe()
+    }
+
+    /// How what lies below all coats looks; `None` if there is too little of it.
+    #[inline]
+    pub(super) fn look(&self) -> Option<Look<'a>> {
+        let opaque = 1.0 - self.clear;
+        let matt = opaque * (self.diffuse.albedo + self.diffuser.albedo) * self.average_left;
+        let rest = opaque * (Vec3::ONE - self.average_left) + self.clear;
+        is_worth(matt, rest).then_some(Look::under(self.specular, self.coat))
+    }
+
+    /// What that scatters, times |cos θi| [1/sr], less its look.
+    #[inline]
+    pub(super) fn matt(&self, wi: Vec3) -> Vec3 {
+        let base = if wi.z > 0.0 { self.diffuse.evaluate(wi) } else { self.diffuser.evaluate(wi) };
+        (1.0 - self.clear) * base * Look::under(self.specular, self.coat).from(wi.z.abs()) / self.average_left
     }
 
     #[inline]

@@ -13,13 +13,22 @@
 //! receiver the place is. A constant sky is shared by directions, pₖ = cos θₖ / π, among receivers that face the same way:
 //! it has no noise where nothing hides it, and shares that differ would bring some.
 //!
+//! Of what a surface shows, its matt part is shared (`bsdf/look.rs`): what is below all coats looks the same from
+//! everywhere, but for a factor l(ωo) that each receiver has of its own. What the coats themselves reflect is the
+//! receiver's alone, as is all that a mirror or clear glass shows. The two parts of a path add up to what it would bring
+//! if none were shared. A place is another's only if it shows others the same frame: where a shading normal looks away
+//! from a receiver, that one sees the flat surface, finds the place for itself and gets nothing of it from others.
+//!
+//! What is seen through a surface that lets light pass is a receiver's alone too: such a surface hides a place from all
+//! others, so that no density has to know what it would leave. So is what lies in a body of glass, which dims it.
+//!
 //! Light straight from sources is not shared: it is nearly noiseless by itself, and the weights of what both light
-//! sampling and the path find are a receiver's own. Nor is light that looks different from elsewhere: a path whose
-//! first surface is not Lambert's, or that passed a surface on its way there, serves its own receiver alone.
+//! sampling and the path find are a receiver's own.
 
 use super::Tally;
 use super::start::PathStart;
 use super::vertex::Vertex;
+use crate::trace::bsdf::Look;
 use crate::trace::effects::Effect;
 use crate::trace::tracer::Tracer;
 use crate::trace::transport::{Sharing, Transport};
@@ -30,30 +39,41 @@ pub(crate) const MOST_RECEIVERS: usize = 16;
 
 /// What one path from a receiver found.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Found {
+pub(crate) struct Found<'t> {
     /// What serves its own receiver alone [cd/m²].
     pub(super) alone: Vec3,
-    pub(super) shared: Option<Shared>,
+    pub(super) shared: Option<Shared<'t>>,
 }
 
 /// What a path found that can serve others.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Shared {
-    pub(super) whence: Whence,
-    /// Radiance from there [cd/m²].
+pub(super) struct Shared<'t> {
+    pub(super) whence: Whence<'t>,
+    /// Radiance from there, over how it looks [cd/m²].
     pub(super) radiance: Vec3,
+    /// How it looks to its own receiver.
+    pub(super) own: Vec3,
 }
 
 /// Where light came from.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Whence {
-    /// A point off a surface, where rays from there start [m], and the surface's unit normal on that side.
-    Surface { point: Vec3, normal: Vec3 },
+pub(super) enum Whence<'t> {
+    /// A place on a surface.
+    Surface {
+        /// A point off it, where rays from there start [m].
+        point: Vec3,
+        /// The surface's unit normal on that side.
+        normal: Vec3,
+        /// The unit normal around which it scatters.
+        shading: Vec3,
+        /// How it looks.
+        look: Look<'t>,
+    },
     /// Beyond the scene, in this unit direction.
     Sky(Vec3),
 }
 
-impl Found {
+impl Found<'_> {
     /// What serves its own receiver alone.
     pub(super) fn alone(radiance: Vec3) -> Self {
         Self { alone: radiance, shared: None }
@@ -64,37 +84,52 @@ impl Tracer {
     /// Whom paths serve that start in this scene: where there is nothing to share, their own receivers alone.
     pub(crate) fn sharing(&self, transport: &Transport) -> Sharing {
         let has_any = self.effects.has(Effect::Interreflection) || self.sky_radiance != Vec3::ZERO;
-        if has_any && self.is_diffuse() { transport.sharing } else { Sharing::Alone }
+        if has_any { transport.sharing } else { Sharing::Alone }
     }
 
     /// Deals out what the path of receiver `own` found: adds the light of each receiver of its group [cd/m²], of which
     /// there are [`MOST_RECEIVERS`] at most.
     pub(crate) fn share(&self, starts: &[PathStart], own: usize, found: &Found, light: &mut [Vec3], tally: &mut Tally) {
         light[own] += found.alone;
-        let Some(Shared { whence, radiance }) = found.shared.filter(|shared| shared.radiance != Vec3::ZERO) else {
+        let Some(Shared { whence, radiance, own: own_look }) =
+            found.shared.filter(|shared| shared.radiance != Vec3::ZERO)
+        else {
             return;
         };
-        let mut densities = [0.0_f32; MOST_RECEIVERS];
-        for (number, (start, density)) in starts.iter().zip(&mut densities).enumerate() {
-            *density = if whence.is_for(start, &starts[own]) { whence.density(start) } else { 0.0 };
-            if number != own && *density > 0.0 {
-                tally.rays += 1;
-                if !self.sees(start, whence) {
-                    *density = 0.0;
+        // A path that has lost its number is to cost nobody else one.
+        if !radiance.is_finite() {
+            light[own] += radiance;
+            return;
+        }
+        let (mut densities, mut looks) = ([0.0_f32; MOST_RECEIVERS], [Vec3::ONE; MOST_RECEIVERS]);
+        for (number, start) in starts.iter().enumerate() {
+            if !whence.is_for(start, &starts[own]) {
+                continue;
+            }
+            let (density, look) = (whence.density(start), if number == own { own_look } else { whence.look(start) });
+            // One who sees nothing of a channel finds none of it for others either.
+            if density > 0.0 && look.min_element() > 0.0 {
+                if number != own {
+                    tally.rays += 1;
+                    if !self.sees(start, whence) {
+                        continue;
+                    }
                 }
+                (densities[number], looks[number]) = (density, look);
             }
         }
         let sum: f32 = densities.iter().sum();
         // So near that no density is a number, a place is its own receiver's alone.
         if !(sum > 0.0 && sum.is_finite()) {
-            light[own] += radiance;
+            light[own] += radiance * own_look;
             return;
         }
-        for (light, density) in light.iter_mut().zip(densities) {
-            *light += radiance * (density / sum);
+        for ((light, density), look) in light.iter_mut().zip(densities).zip(looks) {
+            *light += radiance * look * (density / sum);
         }
     }
 
+    /// Whether nothing is in between, not even what lets light pass.
     fn sees(&self, start: &PathStart, whence: Whence) -> bool {
         match whence {
             Whence::Surface { point, .. } => !self.accel.is_blocked(start.origin, point),
@@ -103,13 +138,13 @@ impl Tracer {
     }
 }
 
-impl From<&Vertex<'_>> for Whence {
-    fn from(vertex: &Vertex<'_>) -> Self {
-        Self::Surface { point: vertex.origin, normal: vertex.geometric_normal }
+impl<'t> Whence<'t> {
+    /// From a vertex that looks like this.
+    pub(super) fn of(vertex: &Vertex<'_>, look: Look<'t>) -> Self {
+        let (normal, shading) = (vertex.geometric_normal, vertex.frame.normal);
+        Self::Surface { point: vertex.origin, normal, shading, look }
     }
-}
 
-impl Whence {
     /// Whether a path of `own` can serve another.
     fn is_for(self, start: &PathStart, own: &PathStart) -> bool {
         matches!(self, Self::Surface { .. }) || start.normal == own.normal
@@ -119,7 +154,7 @@ impl Whence {
     fn density(self, start: &PathStart) -> f32 {
         let (direction, falloff) = match self {
             Self::Sky(direction) => (direction, 1.0),
-            Self::Surface { point, normal } => {
+            Self::Surface { point, normal, .. } => {
                 let offset = point - start.origin;
                 let square = offset.length_squared();
                 (offset, -normal.dot(offset) / (square * square))
@@ -127,6 +162,18 @@ impl Whence {
         };
         let leaves = start.geometric_normal.dot(direction) > 0.0;
         if leaves { (start.normal.dot(direction) * falloff).max(0.0) } else { 0.0 }
+    }
+
+    /// How it looks from a start; zero where that sees another frame.
+    fn look(self, start: &PathStart) -> Vec3 {
+        match self {
+            Self::Sky(_) => Vec3::ONE,
+            Self::Surface { point, shading, look, .. } => {
+                let offset = start.origin - point;
+                let cos = shading.dot(offset) / offset.length();
+                if cos > 0.0 { look.from(cos) } else { Vec3::ZERO }
+            }
+        }
     }
 }
 

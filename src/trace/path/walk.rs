@@ -1,13 +1,13 @@
 //! One path: from a vertex along a ray to the next vertex, and what light it finds on the way.
 
+mod find;
 mod light;
 
-use super::sharing::{Found, Shared, Whence};
 use super::vertex::{Ray, Vertex};
 use super::{PathStart, Tally};
 use crate::math::{Frame, Portable};
 use crate::trace::accel::Hit;
-use crate::trace::bsdf::{Bsdf, Density, Lambert};
+use crate::trace::bsdf::{Bsdf, BsdfSample, Density, Lambert};
 use crate::trace::kernel::{DISTANT, LAYERED, PASSING};
 use crate::trace::light::{LightContext, Way};
 use crate::trace::material::Surface;
@@ -16,7 +16,7 @@ use crate::trace::sampler::{Dimensions, Sampler};
 use crate::trace::shade::Place;
 use crate::trace::surface::TriangleShape;
 use crate::trace::tracer::Tracer;
-use crate::trace::transport::{Estimator, Sharing, Transport};
+use crate::trace::transport::{Estimator, Transport};
 use glam::{Vec2, Vec3};
 
 /// Throughput below which roulette begins. Too high, and it ends paths that are worth their time; too low, and paths
@@ -47,11 +47,11 @@ enum Arrival<'t> {
 }
 
 /// A path in the making.
-pub(super) struct Walk<'t, const K: u32, S> {
+pub(super) struct Walk<'t, 'p, const K: u32, S> {
     tracer: &'t Tracer,
-    sampler: &'t S,
-    transport: &'t Transport,
-    tally: &'t mut Tally,
+    sampler: &'p S,
+    transport: &'p Transport,
+    tally: &'p mut Tally,
     radiance: Vec3,
     throughput: Vec3,
     max_bounces: Option<u32>,
@@ -64,14 +64,16 @@ pub(super) struct Walk<'t, const K: u32, S> {
     /// How much radiance is concentrated where the path began, over where it is: the index squared, which comes back
     /// on the way out and is no loss.
     concentration: f32,
-    /// The triangle that it is at.
-    triangle: u32,
+    /// Where it is.
+    place: Place,
+    /// Whether it went straight through any surface.
+    has_passed: bool,
     /// Whether a surface has spread it out, so that it might have gone elsewhere.
     is_spread: bool,
 }
 
-impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
-    pub(super) fn new(tracer: &'t Tracer, sampler: &'t S, transport: &'t Transport, tally: &'t mut Tally) -> Self {
+impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
+    pub(super) fn new(tracer: &'t Tracer, sampler: &'p S, transport: &'p Transport, tally: &'p mut Tally) -> Self {
         let (radiance, throughput, absorption) = (Vec3::ZERO, Vec3::ONE, Vec3::ZERO);
         let max_bounces = tracer.max_bounces(transport);
         Self {
@@ -86,41 +88,16 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             absorption,
             knows_body: false,
             concentration: 1.0,
-            triangle: 0,
+            place: Place { triangle: 0, barycentric: [0.0; 2] },
+            has_passed: false,
             is_spread: false,
         }
     }
 
     /// E/π at a receiver, by one path.
     pub(super) fn receive(mut self, start: &PathStart) -> Vec3 {
-        self.go_on(Self::receiver(start));
+        self.go_on(&Self::receiver(start));
         self.radiance
-    }
-
-    /// The same, in two parts: what serves this receiver alone, and what others can use that see where it came from.
-    pub(super) fn find(mut self, start: &PathStart) -> Found {
-        if K & (LAYERED | PASSING) != 0 || self.transport.sharing == Sharing::Alone {
-            return Found::alone(self.receive(start));
-        }
-        // A white Lambertian receiver: the density of directions is what it weighs them by, so that no factor is left.
-        let Some(ray) = self.leave(&Self::receiver(start)) else { return Found::alone(self.radiance) };
-        match self.arrive(&ray) {
-            Arrival::At(vertex) => {
-                let (alone, whence) = (std::mem::take(&mut self.radiance), Whence::from(&vertex));
-                self.number += 1;
-                self.go_on(vertex);
-                Found { alone, shared: Some(Shared { whence, radiance: self.radiance }) }
-            }
-            Arrival::Known(vertex, radiance) => {
-                Found { alone: self.radiance, shared: Some(Shared { whence: Whence::from(&vertex), radiance }) }
-            }
-            Arrival::Outside => {
-                self.meet_distant(&ray);
-                let radiance = self.throughput * self.tracer.sky_radiance;
-                Found { alone: self.radiance, shared: Some(Shared { whence: Whence::Sky(ray.direction), radiance }) }
-            }
-            Arrival::Ended => Found::alone(self.radiance),
-        }
     }
 
     /// A receiver as a path's first vertex.
@@ -142,7 +119,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
     /// Radiance that arrives against a camera's ray, by one path.
     pub(super) fn look_along(mut self, ray: Ray) -> Vec3 {
         match self.arrive(&ray) {
-            Arrival::At(vertex) => self.go_on(vertex),
+            Arrival::At(vertex) => self.go_on(&vertex),
             Arrival::Known(_, light) => self.radiance += light,
             Arrival::Outside => self.escape(&ray),
             Arrival::Ended => {}
@@ -150,20 +127,31 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         self.radiance
     }
 
-    fn go_on(&mut self, mut vertex: Vertex<'t>) {
-        while let Some(ray) = self.leave(&vertex) {
-            match self.arrive(&ray) {
-                Arrival::At(next) => vertex = next,
+    fn go_on(&mut self, vertex: &Vertex<'t>) {
+        if let Some(ray) = self.leave(vertex) {
+            self.follow(ray);
+        }
+    }
+
+    /// Follows a path to its end.
+    fn follow(&mut self, mut ray: Ray) {
+        loop {
+            let vertex = match self.arrive(&ray) {
+                Arrival::At(vertex) => vertex,
                 Arrival::Known(_, light) => return self.radiance += light,
                 Arrival::Outside => return self.escape(&ray),
                 Arrival::Ended => return,
-            }
+            };
             self.number += 1;
             if self.number >= MAX_VERTICES {
                 self.tally.endless += 1;
-                self.tally.kept_by = Some(self.tracer.surface_of[self.triangle as usize]);
+                self.tally.kept_by = Some(self.tracer.surface_of[self.place.triangle as usize]);
                 self.tally.was_spread = self.is_spread;
                 return;
+            }
+            match self.leave(&vertex) {
+                Some(next) => ray = next,
+                None => return,
             }
         }
     }
@@ -172,15 +160,15 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
     #[inline]
     fn leave(&mut self, vertex: &Vertex<'t>) -> Option<Ray> {
         let context = vertex.context::<K>();
-        let is_sampled = match self.transport.estimator {
-            // A source without extent is met by no ray, so that light sampling has to find it in any case.
-            Estimator::Bsdf => self.tracer.lights.has_delta(),
-            _ => !self.tracer.lights.is_empty(),
-        };
-        if is_sampled && (K & LAYERED == 0 || vertex.bsdf.has_smooth()) {
-            let found = self.light_sample(vertex, &context);
-            self.radiance += self.throughput * found;
+        if let Some(sent) = self.illuminate(vertex, &context) {
+            self.radiance += self.throughput * sent.radiance;
         }
+        self.scatter(vertex, context).map(|(ray, _)| ray)
+    }
+
+    /// Chooses the way on.
+    #[inline]
+    fn scatter(&mut self, vertex: &Vertex<'t>, context: LightContext) -> Option<(Ray, BsdfSample)> {
         let [u, v, u_survive, u_lobe] = self.sampler.draw(Dimensions::Scatter { vertex: self.number });
         let sample = if K & LAYERED == 0 {
             vertex.lambert.sample(Vec2::new(u, v))
@@ -199,7 +187,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
         }
         self.throughput *= sample.weight;
         self.is_spread |= matches!(sample.density, Density::Smooth(_));
-        Some(Ray { origin, direction, context, density: sample.density, survival: Some(u_survive) })
+        Some((Ray { origin, direction, context, density: sample.density, survival: Some(u_survive) }, sample))
     }
 
     /// Follows a ray to the next vertex; adds what light it meets within the scene.
@@ -252,6 +240,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             let shape = &tracer.triangles[hit.triangle as usize];
             origin = shape.leave(shape.position(hit.barycentric), ray.direction);
             passed += hit.t;
+            self.has_passed = true;
         };
         let shape = &tracer.triangles[hit.triangle as usize];
         let place = hit.place();
@@ -281,7 +270,7 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             }
             self.throughput /= survival;
         }
-        self.triangle = hit.triangle;
+        self.place = place;
         Arrival::At(vertex)
     }
 

@@ -8,6 +8,7 @@ mod extremes;
 mod furnace;
 mod glass;
 mod lambert;
+mod look;
 mod page;
 mod reciprocity;
 mod round_trip;

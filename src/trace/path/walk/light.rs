@@ -10,18 +10,40 @@ use crate::trace::sampler::{Dimensions, Sampler};
 use crate::trace::transport::Estimator;
 use glam::{Vec2, Vec3};
 
-impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
-    /// Radiance that a vertex sends on from one point on a source.
+/// Light from one point on a source that a vertex sends on.
+pub(super) struct Sent {
+    /// That light [cd/m²].
+    pub(super) radiance: Vec3,
+    /// Where it came from, in the vertex's frame.
+    pub(super) wi: Vec3,
+    /// Scattering function times |cos θi| for it [1/sr].
+    pub(super) response: Vec3,
+}
+
+impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
+    /// Light that a vertex sends on straight from sources.
     #[inline]
-    pub(super) fn light_sample(&mut self, vertex: &Vertex<'t>, context: &LightContext) -> Vec3 {
+    pub(super) fn illuminate(&mut self, vertex: &Vertex<'t>, context: &LightContext) -> Option<Sent> {
+        let is_sampled = match self.transport.estimator {
+            // A source without extent is met by no ray, so that light sampling has to find it in any case.
+            Estimator::Bsdf => self.tracer.lights.has_delta(),
+            _ => !self.tracer.lights.is_empty(),
+        };
+        if is_sampled && (K & LAYERED == 0 || vertex.bsdf.has_smooth()) {
+            return self.light_sample(vertex, context);
+        }
+        None
+    }
+
+    /// Light that a vertex sends on from one point on a source.
+    #[inline]
+    fn light_sample(&mut self, vertex: &Vertex<'t>, context: &LightContext) -> Option<Sent> {
         let [u, v, u_choice, _] = self.sampler.draw(Dimensions::Light { vertex: self.number });
         let lights = &self.tracer.lights;
-        let Some(sample) = lights.sample(context, Vec2::new(u, v), u_choice) else {
-            return Vec3::ZERO;
-        };
+        let sample = lights.sample(context, Vec2::new(u, v), u_choice)?;
         let estimator = self.transport.estimator;
         if estimator == Estimator::Bsdf && sample.pdf.is_some() {
-            return Vec3::ZERO;
+            return None;
         }
         let wi = vertex.frame.local_from_world(sample.wi);
         let (scattering, scattering_pdf) = if K & LAYERED == 0 {
@@ -31,11 +53,9 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             (response.value, response.pdf)
         };
         if scattering == Vec3::ZERO {
-            return Vec3::ZERO;
+            return None;
         }
-        let Some(origin) = vertex.origin_towards::<K>(wi, sample.wi) else {
-            return Vec3::ZERO;
-        };
+        let origin = vertex.origin_towards::<K>(wi, sample.wi)?;
         let mut value = scattering * sample.value;
         if K & (TEXTURED | PASSING) != 0 {
             value *= self.tracer.glow_share::<K>(&sample, context);
@@ -49,10 +69,11 @@ impl<'t, const K: u32, S: Sampler> Walk<'t, K, S> {
             };
             value *= dimming(absorption, sample.distance);
         }
-        match (estimator, sample.pdf) {
+        let radiance = match (estimator, sample.pdf) {
             (Estimator::Mis, Some(pdf)) => value * power_heuristic(pdf, scattering_pdf),
             _ => value,
-        }
+        };
+        Some(Sent { radiance, wi, response: scattering })
     }
 
     /// Share of the light that gets through on the way to a source.
