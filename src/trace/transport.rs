@@ -14,11 +14,13 @@ pub enum Estimator {
     Bsdf,
 }
 
-/// Whom the paths of a lightmap's texel serve. The mean is the same; a bake of shared paths has less noise.
+/// Whom the paths of a lightmap's texel serve. The mean is the same; a bake of shared paths has less noise for its time,
+/// but for scenes whose noise is that of mirrors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Sharing {
     /// A group of up to sixteen texels of one object, none beside another, that see where the light came from (Bekaert,
-    /// Sbert and Halton 2002). Between matt surfaces only; elsewhere as [`Self::Alone`].
+    /// Sbert and Halton 2002). What is matt about surfaces is shared; their gloss, what mirrors, metals and clear glass
+    /// show, and all that is seen through something is each texel's own.
     #[default]
     Group,
     /// The texel alone: no two texels' errors have to do with each other.

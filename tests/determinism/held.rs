@@ -29,7 +29,7 @@ pub const HELD: [Held; 3] = [
         layout: Layout::Shared { size: 32 },
     },
     Held { name: "garden", hash: 0x3533_4be0_9145_bbd8, scene: garden, density: 5.0, layout: Layout::Packed },
-    Held { name: "vitrine", hash: 0xb5b5_a42e_f601_ef99, scene: vitrine, density: 4.0, layout: Layout::Packed },
+    Held { name: "vitrine", hash: 0x4f18_5d4c_16e0_b7ff, scene: vitrine, density: 4.0, layout: Layout::Packed },
 ];
 
 impl Held {

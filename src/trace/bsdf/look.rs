@@ -32,6 +32,12 @@ impl<'a> Look<'a> {
         Self(Some((specular, coat)))
     }
 
+    /// Whether it is the same from everywhere.
+    #[inline]
+    pub(in crate::trace) fn is_even(&self) -> bool {
+        self.0.is_none()
+    }
+
     /// The factor from a direction of this cosine to the normal, per channel.
     #[inline]
     pub(in crate::trace) fn from(&self, cos: f32) -> Vec3 {

@@ -168,6 +168,8 @@ impl<'t> Whence<'t> {
     fn look(self, start: &PathStart) -> Vec3 {
         match self {
             Self::Sky(_) => Vec3::ONE,
+            // The density has asked on which side the start is.
+            Self::Surface { normal, shading, look, .. } if look.is_even() && shading == normal => Vec3::ONE,
             Self::Surface { point, shading, look, .. } => {
                 let offset = start.origin - point;
                 let cos = shading.dot(offset) / offset.length();
