@@ -135,8 +135,8 @@ impl TriangleShape {
     /// Has its memory brought nearer: its first line of cache and its last.
     #[inline(always)]
     pub(super) fn prefetch(&self) {
-        prefetch_index(&self.vertices, 0);
-        prefetch_index(&self.rim, 2);
+        prefetch_index(self.vertices.as_slice(), 0);
+        prefetch_index(self.rim.as_slice(), 2);
     }
 
     /// The same triangle in the traced frame. Its vertices are moved exactly, so that its normal stays.

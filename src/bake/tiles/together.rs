@@ -66,3 +66,31 @@ pub(super) fn carry_on(
     }
     Some(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    /// Whatever is missing of a tile, each texel is in one group, no group is too large, and no neighbours meet in one.
+    #[test]
+    fn a_group_is_of_texels_that_are_no_neighbours() {
+        let all = || (0..256_u32).map(|index| [32 + index % 16, 48 + index / 16]);
+        for (missing, sharing) in [(0, Sharing::Group), (3, Sharing::Group), (7, Sharing::Group), (3, Sharing::Alone)] {
+            let places: Vec<[u32; 2]> = all().filter(|[x, y]| missing == 0 || (7 * x + 5 * y) % missing != 0).collect();
+            let groups = groups(places.iter().copied(), sharing);
+            let members: Vec<u16> = groups.iter().flatten().copied().collect();
+            assert_eq!(members.len(), places.len());
+            assert_eq!(members.iter().collect::<BTreeSet<_>>().len(), places.len());
+            for group in &groups {
+                let most = if sharing == Sharing::Alone { 1 } else { MOST_RECEIVERS };
+                assert!((1..=most).contains(&group.len()));
+                assert!(group.is_sorted(), "in the order of the tile, as the rounds take them");
+                for (a, b) in group.iter().flat_map(|a| group.iter().map(move |b| (a, b))).filter(|(a, b)| a != b) {
+                    let [a, b] = [a, b].map(|&number| places[usize::from(number)]);
+                    assert!((0..2).any(|axis| a[axis].abs_diff(b[axis]) >= STRIDE), "{a:?} {b:?}");
+                }
+            }
+        }
+    }
+}

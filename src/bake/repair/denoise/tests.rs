@@ -28,6 +28,24 @@ fn noisy([width, height]: [u32; 2], seed: u64, stderr: f32, truth: impl Fn(f32, 
     field
 }
 
+/// The same under even light, with the noise of texels that share their paths: alike every fourth texel of a tile.
+fn akin(seed: u64, stderr: f32) -> Field {
+    let side = 64;
+    let mut field = Field::empty([side; 2]);
+    let mut random = Random::new(seed);
+    let tiles = side / 16;
+    let noise: Vec<[f32; 16]> = (0..16 * tiles * tiles).map(|_| std::array::from_fn(|_| normal(&mut random))).collect();
+    for index in 0..field.value.len() {
+        let [x, y] = [index as u32 % side, index as u32 / side];
+        let family = (y / 16 * tiles + x / 16) * 16 + y % 4 * 4 + x % 4;
+        let runs = noise[family as usize].map(|noise| Vec3::splat((1.0 + 4.0 * stderr * noise).max(0.0)));
+        measure(&mut field, index, &runs);
+        field.position[index] = Vec3::new(x as f32, 0.0, y as f32);
+    }
+    link(&mut field);
+    field
+}
+
 fn measure(field: &mut Field, index: usize, runs: &[Vec3]) {
     let mean = runs.iter().sum::<Vec3>() / 16.0;
     let squares: Vec3 = runs.iter().map(|run| (*run - mean) * (*run - mean)).sum();
@@ -307,5 +325,27 @@ proptest! {
         for index in (0..after.value.len()).filter(|index| index % 16 < 8) {
             prop_assert_eq!(after.value[index], Vec3::ZERO);
         }
+    }
+}
+
+/// Errors of texels that share their paths do not go away as others do, and what is told of the rest knows it.
+#[test]
+fn what_is_left_is_told_also_of_texels_that_err_together() {
+    let even = |seed| noisy([64; 2], seed, 0.1, |_, _| Vec3::ONE);
+    let root_mean = |values: &[Vec3], of: fn(&Vec3) -> f32| {
+        (values.iter().map(|value| of(value).powi(2)).sum::<f32>() / values.len() as f32).sqrt()
+    };
+    let [mut off, mut told] = [[0.0_f32; 2]; 2];
+    for seed in 0..4 {
+        for (kind, field) in [even(seed), akin(seed, 0.1)].iter().enumerate() {
+            let field = denoised(field);
+            off[kind] += root_mean(&field.value, |value| value.y - 1.0) / 4.0;
+            told[kind] += root_mean(&field.residual, |residual| residual.y) / 4.0;
+        }
+    }
+    assert!(off[1] > 1.5 * off[0], "no kinship to be seen: {off:?}");
+    for kind in 0..2 {
+        let ratio = told[kind] / off[kind];
+        assert!((0.8..1.6).contains(&ratio), "kind {kind}: told {told:?}, off {off:?}");
     }
 }
