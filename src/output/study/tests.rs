@@ -165,7 +165,7 @@ fn the_table_has_every_point() {
     let csv = table::csv(&study);
     let rows: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(rows[0], ["technique", "paths", "cpu_seconds", "error", "standing"]);
-    assert_eq!(rows.len(), 1 + 70);
+    assert_eq!(rows.len(), 1 + 80);
     assert!(rows.iter().all(|row| row.len() == 5));
     assert_eq!(rows[1][..2], ["mis", "16"]);
     assert!((rows[1][3].parse::<f64>().unwrap() - 0.16).abs() < 1e-6);
