@@ -33,13 +33,18 @@ impl TexelLayout {
         let Compiled { tracer, faults, .. } = Compiled::new(&laid_out.scene, &settings.transport);
         let atlas = Atlas::new(&laid_out, &tracer, settings, cancel)?;
         let faults = laid_out.without_solved(faults).into_iter().map(BakeWarning::from);
-        let warnings = faults.chain(laid_out.warnings.iter().chain(&atlas.warnings).cloned()).collect();
-        Ok(Self {
+        let of_layout = Self::of(&laid_out, &atlas);
+        Ok(Self { warnings: faults.chain(of_layout.warnings).collect(), ..of_layout })
+    }
+
+    /// What is laid out already.
+    pub(super) fn of(laid_out: &LaidOut<'_>, atlas: &Atlas<'_>) -> Self {
+        Self {
             pages: atlas.pages.clone(),
-            placements: placements(&laid_out, &atlas),
-            warnings,
-            meshes: laid_out.meshes,
-        })
+            placements: placements(laid_out, atlas),
+            meshes: laid_out.meshes.clone(),
+            warnings: laid_out.warnings.iter().chain(&atlas.warnings).cloned().collect(),
+        }
     }
 }
 

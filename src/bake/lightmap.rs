@@ -1,22 +1,28 @@
 //! A lightmap: pages of texels and where each object lies on them, and how they are made.
 
 use super::atlas::Atlas;
+use super::baker::{Earlier, Kept, Upcoming};
 use super::balance::energy_balance;
 use super::endless::refuse_endless_texels;
 use super::gather::Estimate;
 use super::layout::placements;
-use super::repair::{DisplayedRect, Field, Filtering, Repairs, Surroundings, TexelState, repair};
+use super::live::{PREVIEW_PATHS, nearest_first};
+use super::repair::{DisplayedRect, Field, Filtering, Repairs, Surroundings, TexelState, repair, repair_for_preview};
 use super::reuse::{FIRST_PATHS, Place};
 use super::sites::{Covered, Site, Sites};
 use super::survey::{Survey, Surveyed};
 use super::tiles::{ErrorTarget, Tile, Until, tiles};
 use super::unwrap::{LaidOut, LaidOutMesh};
 use super::workers::{Work, Workers};
-use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, Goal, Intervals, ProgressSink, Stage};
+use super::{
+    BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, Goal, Intervals, LiveSink, ProgressSink, Stage,
+    TexelLayout,
+};
 use crate::artefact::StableId;
 use crate::scene::{Fault, Light, Scene};
-use crate::trace::{Compiled, Tracer, Transport, effect_of};
+use crate::trace::{Compiled, Tracer, effect_of};
 use glam::{DVec3, Vec2, Vec3};
+use std::borrow::Cow;
 use std::time::Instant;
 
 /// A finished lightmap bake.
@@ -82,6 +88,16 @@ pub struct Placement {
     pub mesh: Option<usize>,
 }
 
+/// What was measured, and of what.
+pub(super) struct Measured {
+    pub(super) sites: Vec<Site>,
+    pub(super) tiles: Vec<Tile>,
+    /// In the order of the sites.
+    pub(super) estimates: Vec<Estimate>,
+    /// Of each tile, see [`Kept::drift`].
+    pub(super) drift: Vec<f64>,
+}
+
 /// Bakes a lightmap of a scene.
 ///
 /// # Errors
@@ -93,6 +109,18 @@ pub fn bake_lightmap(
     progress: &dyn ProgressSink,
     cancel: &CancelToken,
 ) -> Result<Lightmap, BakeError> {
+    Ok(bake(scene, settings, None, progress, cancel)?.0)
+}
+
+/// Bakes a lightmap of a scene, of which `earlier` may be another bake, and gives with it what may be remembered: the
+/// scene as laid out, how well its texels are known, and all that was measured.
+pub(super) fn bake<'a>(
+    scene: &'a Scene,
+    settings: &BakeSettings,
+    earlier: Option<&Earlier>,
+    progress: &dyn ProgressSink,
+    cancel: &CancelToken,
+) -> Result<(Lightmap, Cow<'a, Scene>, Until, Measured), BakeError> {
     let clock = Instant::now();
     settings.validate()?;
     let workers = Workers::new(settings.threads, progress, cancel)?;
@@ -108,8 +136,21 @@ pub fn bake_lightmap(
     let first_pass =
         Place { tracer: &tracer, atlas: &atlas, sites: &sites }.first_pass(FIRST_PATHS, settings, &workers)?;
     let tiles = tiles(&sites, tracer.sharing(&settings.transport));
-    let until = until(settings, &Surveyed { tiles: &tiles, sites: &sites, tracer: &tracer }, &workers, clock)?;
-    let work = measure(&tiles, &sites, &tracer, until, &settings.transport, &workers)?;
+    let surveyed = Surveyed { tiles: &tiles, sites: &sites, tracer: &tracer };
+    let until = until(settings, earlier, &surveyed, &workers, clock)?;
+    let upcoming = Upcoming { scene, settings, tracer: &tracer, sites: &sites, tiles: &tiles, until };
+    let kept = match earlier {
+        Some(earlier) => earlier.kept(&upcoming, &workers)?,
+        None => vec![None; tiles.len()],
+    };
+    if let Some(live) = workers.live() {
+        live.laid_out(&TexelLayout::of(&laid_out, &atlas));
+        let known = measure(&Upcoming { until: Until::Samples(PREVIEW_PATHS), ..upcoming }, &kept, None, &workers)?;
+        let mut fields = fields(&atlas, &sites, &known.results, &hidden);
+        repair_for_preview(&mut fields, settings, &workers)?;
+        live.preview(pages(fields, &sites, &known.results));
+    }
+    let work = measure(&upcoming, &kept, workers.live(), &workers)?;
     let balance = energy_balance(&tracer, &sites, &work.results, &settings.transport, &workers)?;
     workers.announce(Stage::Repair)?;
     let mut fields = fields(&atlas, &sites, &work.results, &hidden);
@@ -119,6 +160,7 @@ pub fn bake_lightmap(
     let of_transport = BakeWarning::of_transport(&settings.transport, &census);
     let of_layout = laid_out.warnings.iter().chain(&atlas.warnings).cloned();
     let warnings = faults.into_iter().map(BakeWarning::from).chain(of_layout).chain(of_uv1).chain(of_transport);
+    let is_kept = |(tile, kept): (&Tile, &Option<Kept>)| kept.as_ref().map_or(0, |_| tile.sites.len() as u64);
     let report = BakeReport {
         energy_balance: balance,
         hidden: hidden.len() as u64,
@@ -128,6 +170,7 @@ pub fn bake_lightmap(
         denoised,
         seams,
         intervals: Intervals::of(&work.results, until),
+        kept: earlier.map(|_| tiles.iter().zip(&kept).map(is_kept).sum()),
         ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings).with(first_pass)
     };
     let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));
@@ -135,21 +178,28 @@ pub fn bake_lightmap(
     let mut baked_lights: Vec<StableId> = baked_lights.collect();
     baked_lights.sort();
     let placements = placements(&laid_out, &atlas);
-    Ok(Lightmap { placements, pages, meshes: laid_out.meshes, baked_lights, report })
+    drop(atlas);
+    let drift = kept.iter().map(|kept| kept.as_ref().map_or(0.0, |kept| kept.drift)).collect();
+    let measured = Measured { sites, tiles, estimates: work.results, drift };
+    Ok((Lightmap { placements, pages, meshes: laid_out.meshes, baked_lights, report }, laid_out.scene, until, measured))
 }
 
-/// What the goal comes down to in this scene.
+/// What the goal comes down to in this scene. A time comes down to the error of the bake before, if there was one.
 fn until(
     settings: &BakeSettings,
+    earlier: Option<&Earlier>,
     surveyed: &Surveyed<'_>,
     workers: &Workers<'_>,
     clock: Instant,
 ) -> Result<Until, BakeError> {
     let target = |survey: &Survey, relative| Until::Error(ErrorTarget { relative, floor: survey.floor() });
-    Ok(match settings.goal {
-        Goal::Samples(count) => Until::Samples(count),
-        Goal::Error(error) => target(&surveyed.survey(&settings.transport, workers)?, error),
-        Goal::Time(time) => {
+    Ok(match (settings.goal, earlier.map(Earlier::until)) {
+        (Goal::Samples(count), _) => Until::Samples(count),
+        (Goal::Error(error), _) => target(&surveyed.survey(&settings.transport, workers)?, error),
+        (Goal::Time(_), Some(Until::Error(before))) => {
+            target(&surveyed.survey(&settings.transport, workers)?, before.relative)
+        }
+        (Goal::Time(time), _) => {
             let survey = surveyed.survey(&settings.transport, workers)?;
             let left = time.saturating_sub(clock.elapsed());
             target(&survey, survey.error_within(left.as_secs_f64()))
@@ -157,20 +207,46 @@ fn until(
     })
 }
 
-/// Measures all texels; the results are in the order of the sites.
+/// Measures the texels of all tiles but of those that are kept; the results are in the order of the sites.
 fn measure(
-    tiles: &[Tile],
-    sites: &[Site],
-    tracer: &Tracer,
-    until: Until,
-    transport: &Transport,
+    upcoming: &Upcoming<'_>,
+    kept: &[Option<Kept>],
+    live: Option<&dyn LiveSink>,
     workers: &Workers<'_>,
 ) -> Result<Work<Estimate>, BakeError> {
-    let of_tile = |tile: &Tile, cancel: &CancelToken| tile.measure(sites, tracer, until, transport, cancel);
-    let Work { results, cpu } = workers.gather_groups(tiles, sites.len(), of_tile, Estimate::relative_stderr)?;
+    let Upcoming { settings, tracer, sites, tiles, until, .. } = *upcoming;
     let mut in_order = vec![Estimate::default(); sites.len()];
-    let numbers = tiles.iter().flat_map(|tile| &tile.sites);
-    numbers.zip(results).for_each(|(&number, estimate)| in_order[number as usize] = estimate);
+    let mut note = |tile: &Tile, estimates: &[Estimate]| {
+        tile.sites.iter().zip(estimates).for_each(|(&number, estimate)| in_order[number as usize] = *estimate);
+    };
+    let mut open: Vec<&Tile> = Vec::with_capacity(tiles.len());
+    for (tile, kept) in tiles.iter().zip(kept) {
+        match kept {
+            Some(kept) => note(tile, &kept.estimates),
+            None => open.push(tile),
+        }
+    }
+    let total = open.iter().map(|tile| tile.sites.len()).sum();
+    if let Some(viewpoint) = live.and_then(LiveSink::viewpoint) {
+        nearest_first(&mut open, sites, viewpoint);
+    }
+    let of_tile = |tile: &&Tile, cancel: &CancelToken| {
+        let estimates = tile.measure(sites, tracer, until, &settings.transport, cancel)?;
+        if let Some(live) = live {
+            let texel =
+                |(&site, estimate): (&u32, &Estimate)| (sites[site as usize].covered.index, estimate.mean.as_vec3());
+            let texels: Vec<(u32, Vec3)> = tile.sites.iter().zip(&estimates).map(texel).collect();
+            live.measured(sites[tile.sites[0] as usize].covered.page, &texels);
+        }
+        Some(estimates)
+    };
+    let Work { results, cpu } = workers.gather_groups(&open, total, of_tile, Estimate::relative_stderr)?;
+    let mut rest = results.as_slice();
+    for tile in open {
+        let (own, others) = rest.split_at(tile.sites.len());
+        note(tile, own);
+        rest = others;
+    }
     Ok(Work { results: in_order, cpu })
 }
 

@@ -14,6 +14,7 @@
 //! Every number is a function of the scene, the settings and the seed: threads and order cannot matter.
 
 mod atlas;
+mod baker;
 mod balance;
 mod charts;
 mod endless;
@@ -23,6 +24,7 @@ mod gather;
 mod goal;
 mod layout;
 mod lightmap;
+mod live;
 mod meter;
 mod picture;
 mod plan;
@@ -41,12 +43,14 @@ mod unwrap;
 mod validity;
 mod workers;
 
+pub use baker::Baker;
 pub use error::{BakeError, BakeWarning};
 pub(crate) use film::{Film, FilmSettings};
 pub use gather::REPLICATES;
 pub use goal::{DARK, Goal};
 pub use layout::{TexelLayout, unwrap_meshes};
 pub use lightmap::{Lightmap, Page, Placement, bake_lightmap};
+pub use live::LiveSink;
 pub use meter::{Measurement, MeterPoint, MeterReading, MeterSettings, measure_irradiance};
 pub use picture::{Picture, PictureSettings, render_picture};
 pub use plan::{BakePlan, PlannedEffect, Prediction};

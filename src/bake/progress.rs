@@ -1,5 +1,6 @@
 //! What a bake says while it works, and how it is stopped.
 
+use super::LiveSink;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -31,6 +32,11 @@ pub struct Progress {
 pub trait ProgressSink: Sync {
     /// Takes one report. Called often: be quick.
     fn report(&self, progress: Progress);
+
+    /// Who watches the texels of a lightmap as they come.
+    fn live(&self) -> Option<&dyn LiveSink> {
+        None
+    }
 }
 
 /// Hears nothing.

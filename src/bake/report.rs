@@ -15,9 +15,12 @@ pub struct BakeReport {
     pub texels: u64,
     /// Texels that triangles cover and nobody sees, since they lie inside of bodies in the dark.
     pub hidden: u64,
-    /// Paths that started from what was measured.
+    /// Of them, those that were taken from the bake before, since nothing that changed reaches them; `None` in a bake
+    /// from nothing.
+    pub kept: Option<u64>,
+    /// Paths that started from what was measured, now or in the bake that it is taken from.
     pub samples: u64,
-    /// Rays traced, shadow rays included.
+    /// Rays traced for these, shadow rays included.
     pub rays: u64,
     /// Processor time of the baking threads [s].
     pub cpu_seconds: f64,
@@ -175,6 +178,7 @@ impl BakeReport {
         Self {
             texels: work.results.len() as u64,
             hidden: 0,
+            kept: None,
             samples: work.results.iter().map(|estimate| estimate.samples).sum(),
             rays: work.results.iter().map(|estimate| estimate.rays).sum(),
             cpu_seconds: work.cpu.as_secs_f64(),

@@ -115,6 +115,11 @@ impl Tile {
         Self { around: of_tile.iter().map(of_one).collect(), sites: of_tile, groups }
     }
 
+    /// Whether texels lie around each other and trace together as in another tile.
+    pub(super) fn is_arranged_as(&self, other: &Self) -> bool {
+        self.around == other.around && self.groups == other.groups
+    }
+
     /// Groups of those that trace together, by their places in the tile.
     pub(super) fn groups(&self) -> impl Iterator<Item = impl Iterator<Item = usize> + '_> {
         self.groups.iter().map(|group| group.iter().map(|&place| place.into()))

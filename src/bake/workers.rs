@@ -1,11 +1,11 @@
 //! Threads that work through a list, tell how far they are, and stop when asked to.
 
-use super::{BakeError, CancelToken, Progress, ProgressSink, Stage};
+use super::{BakeError, CancelToken, LiveSink, Progress, ProgressSink, Stage};
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// The most items that one thread takes at a time: few enough to share out evenly, many enough to keep neighbours
@@ -51,6 +51,11 @@ impl<'a> Workers<'a> {
         Ok(Self { pool, progress, cancel })
     }
 
+    /// Who watches the texels as they come.
+    pub(super) fn live(&self) -> Option<&'a dyn LiveSink> {
+        self.progress.live()
+    }
+
     /// Tells about a stage that is not worked through by items.
     pub(super) fn announce(&self, stage: Stage) -> Result<(), BakeError> {
         self.progress.report(Progress { stage, done: 0, total: 1, relative_stderr: None });
@@ -70,7 +75,8 @@ impl<'a> Workers<'a> {
         self.gather_groups(&chunks, items.len(), of_chunk, error)
     }
 
-    /// The same for groups of items, of which there are `total`: `work` makes one result for each item of a group.
+    /// The same for groups of items, of which there are `total`: `work` makes one result for each item of a group. Groups
+    /// are begun in their order.
     pub(super) fn gather_groups<G: Sync, T: Send>(
         &self,
         groups: &[G],
@@ -85,9 +91,20 @@ impl<'a> Workers<'a> {
             self.tell(&tally, total, &results, clock.elapsed(), &error);
             Some(results)
         };
-        let of_groups: Option<Vec<Vec<T>>> =
-            self.pool.install(|| groups.par_iter().with_max_len(1).map(of_group).collect());
-        let results = of_groups.ok_or(BakeError::Cancelled)?.into_iter().flatten().collect();
+        let next = AtomicUsize::new(0);
+        let of_thread = |_: rayon::BroadcastContext<'_>| -> Option<Vec<(usize, Vec<T>)>> {
+            let mut own = Vec::new();
+            loop {
+                let number = next.fetch_add(1, Ordering::Relaxed);
+                let Some(group) = groups.get(number) else { return Some(own) };
+                own.push((number, of_group(group)?));
+            }
+        };
+        let of_threads: Option<Vec<Vec<(usize, Vec<T>)>>> = self.pool.broadcast(of_thread).into_iter().collect();
+        let mut of_groups: Vec<(usize, Vec<T>)> =
+            of_threads.ok_or(BakeError::Cancelled)?.into_iter().flatten().collect();
+        of_groups.sort_unstable_by_key(|&(number, _)| number);
+        let results = of_groups.into_iter().flat_map(|(_, results)| results).collect();
         let cpu = tally.lock().map_or(Duration::ZERO, |tally| tally.cpu);
         Ok(Work { results, cpu })
     }

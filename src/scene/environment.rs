@@ -8,7 +8,7 @@ use std::sync::Arc;
 /// An equirectangular picture of the sky, constant over each of its pixels. Row 0 is up (+Y); in its own frame, a
 /// unit direction lies at u = ½ + atan2(z, x)/2π, v = arccos(y)/π, so that +X is in the middle and −Z a quarter from
 /// the left, as in Blender and in three.js.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct EnvironmentMap {
     /// The name by which a person knows it.
     pub name: String,

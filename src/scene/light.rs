@@ -6,7 +6,7 @@ use crate::artefact::StableId;
 use glam::{Affine3A, Vec3};
 
 /// A light source that is no mesh.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Light {
     /// A glowing rectangle.
     Rect(RectLight),
@@ -38,10 +38,20 @@ impl Light {
             Self::Directional(light) => &light.name,
         }
     }
+
+    /// The same, to be changed.
+    pub(crate) fn name_mut(&mut self) -> &mut String {
+        match self {
+            Self::Rect(light) => &mut light.name,
+            Self::Point(light) => &mut light.name,
+            Self::Spot(light) => &mut light.bulb.name,
+            Self::Directional(light) => &mut light.name,
+        }
+    }
 }
 
 /// A rectangle in the local XY plane that shines along local −Z and blocks nothing, as Bevy's `RectLight`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RectLight {
     /// Stable from bake to bake.
     pub id: StableId,
@@ -61,7 +71,7 @@ pub struct RectLight {
 
 /// A sphere of the same radiance all over that blocks nothing, as Bevy's `PointLight`; a point where it has no radius.
 /// A receiver inside the sphere sees it shrunk until it touches the receiver, at the same intensity.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PointLight {
     /// Stable from bake to bake.
     pub id: StableId,
@@ -80,7 +90,7 @@ pub struct PointLight {
 /// A [`PointLight`] behind a cone, as Bevy's `SpotLight`: all of the sphere is dimmed by where the receiver lies,
 /// by saturate((cos θ − cos outer) / (cos inner − cos outer))², θ between the axis and the way from the centre to the
 /// receiver.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SpotLight {
     /// The lamp; its intensity is that on the axis.
     pub bulb: PointLight,
@@ -94,7 +104,7 @@ pub struct SpotLight {
 
 /// A disc of the same radiance all over, infinitely far away, as Bevy's `DirectionalLight` with its `SunDisk`; a
 /// single direction where it has no diameter.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct DirectionalLight {
     /// Stable from bake to bake.
     pub id: StableId,

@@ -6,7 +6,7 @@ use super::texture::TextureRef;
 use glam::{Affine2, Vec3, Vec4};
 
 /// A surface.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// The name by which a person knows it.
     pub name: String,

@@ -14,7 +14,7 @@ pub enum Topology {
 }
 
 /// Which vertex each corner is.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Indices {
     /// Corner i is vertex i.
     #[default]
@@ -26,7 +26,7 @@ pub enum Indices {
 }
 
 /// A shape in its own frame. Fronts are counter-clockwise.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// The name by which a person knows it.
     pub name: String,
@@ -95,7 +95,7 @@ pub struct LightmapRequest {
 }
 
 /// A mesh placed in the world.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Instance {
     /// Stable from bake to bake and unique in the scene: what its texels' random numbers are keyed by.
     pub id: StableId,

@@ -7,6 +7,7 @@
 //! Lengths are metres, Y is up, colours are linear Rec. 709.
 
 mod camera;
+mod change;
 mod environment;
 mod fault;
 mod id;
@@ -17,6 +18,7 @@ mod texture;
 mod validate;
 
 pub use camera::Camera;
+pub(crate) use change::Change;
 pub use environment::EnvironmentMap;
 pub use fault::{Fault, FaultKind, Subject};
 pub use id::unique_ids;

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 /// A picture that materials refer to. Row 0 is v = 0, as in glTF.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     /// The name by which a person knows it.
     pub name: String,
@@ -21,7 +21,7 @@ pub struct Texture {
 }
 
 /// Texels in the encoding in which they came.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Texels {
     /// Eight bits a channel; red, green and blue by the sRGB curve, alpha linear.
     Srgb8(Arc<[[u8; 4]]>),

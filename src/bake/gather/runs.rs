@@ -128,6 +128,19 @@ impl Runs {
         &mut self.tally
     }
 
+    /// The luminance of a sum of estimates that are made of the same random numbers, each with its factor, and its
+    /// standard error: the spread of the sums of their runs.
+    pub(in crate::bake) fn luminance_of_sum(terms: &[(f64, Self)]) -> [f64; 2] {
+        let of_run = |run: usize| -> f64 {
+            terms.iter().map(|(factor, of)| factor * luminance(of.runs[run].sum / of.accepted.max(1) as f64)).sum()
+        };
+        let sums: [f64; REPLICATES as usize] = std::array::from_fn(of_run);
+        let count = f64::from(REPLICATES);
+        let mean = sums.iter().sum::<f64>() / count;
+        let squares: f64 = sums.iter().map(|sum| (sum - mean).powi(2)).sum();
+        [mean, (squares / (count * (count - 1.0))).sqrt()]
+    }
+
     /// What they say.
     pub(in crate::bake) fn estimate(&self) -> Estimate {
         let count = f64::from(REPLICATES);

@@ -66,6 +66,26 @@ pub(super) fn repair(
     settings: &BakeSettings,
     workers: &Workers<'_>,
 ) -> Result<Repairs, BakeError> {
+    let (denoised, owners) = repair_pages(fields, settings, workers)?;
+    let seams = seams::mend(fields, &owners, place, workers)?;
+    Ok(Repairs { denoised, seams })
+}
+
+/// All of that but for seams: what a preview needs.
+pub(super) fn repair_for_preview(
+    fields: &mut [Field],
+    settings: &BakeSettings,
+    workers: &Workers<'_>,
+) -> Result<(), BakeError> {
+    repair_pages(fields, settings, workers).map(drop)
+}
+
+/// Repairs each page by itself; gives what the denoiser did, and who filled each texel.
+fn repair_pages(
+    fields: &mut [Field],
+    settings: &BakeSettings,
+    workers: &Workers<'_>,
+) -> Result<(Option<Denoised>, Vec<dilate::Owners>), BakeError> {
     let denoised = match settings.denoise {
         Denoise::Off => None,
         Denoise::BuiltIn => Some(denoise::denoise(fields, workers)?),
@@ -77,6 +97,5 @@ pub(super) fn repair(
         barrier::stop_light_in_walls(field, &owner);
         owners.push(owner);
     }
-    let seams = seams::mend(fields, &owners, place, workers)?;
-    Ok(Repairs { denoised, seams })
+    Ok((denoised, owners))
 }

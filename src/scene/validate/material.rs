@@ -33,6 +33,19 @@ impl Material {
     }
 }
 
+impl Material {
+    /// The same, to be changed, in the same order.
+    pub(crate) fn textures_mut(&mut self) -> Vec<&mut TextureRef> {
+        let standard = match &mut self.scattering {
+            Scattering::Standard(standard) => Some(standard.textures_mut()),
+            _ => None,
+        };
+        let normal_map = self.normal_map.as_mut().map(|map| &mut map.texture);
+        let own = [self.base_colour_texture.as_mut(), self.emission_texture.as_mut(), normal_map];
+        own.into_iter().chain(standard.into_iter().flatten()).flatten().collect()
+    }
+}
+
 impl Scattering {
     fn faults(&self, base_colour: Vec3) -> Vec<FaultKind> {
         match self {
@@ -86,6 +99,16 @@ impl Standard {
             self.diffuse_transmission_texture,
             self.clearcoat_texture,
             self.clearcoat_roughness_texture,
+        ]
+    }
+
+    fn textures_mut(&mut self) -> [Option<&mut TextureRef>; 5] {
+        [
+            self.metallic_roughness_texture.as_mut(),
+            self.specular_transmission_texture.as_mut(),
+            self.diffuse_transmission_texture.as_mut(),
+            self.clearcoat_texture.as_mut(),
+            self.clearcoat_roughness_texture.as_mut(),
         ]
     }
 }
