@@ -11,7 +11,7 @@ use bevy_kiln::bake::{
 use bevy_kiln::math::luminance;
 use bevy_kiln::scene::{Light, RectLight, Scene};
 use common::scenes::{SceneBuilder, grey};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 use std::sync::Mutex;
@@ -97,6 +97,9 @@ fn from_nothing(scene: &Scene, settings: &BakeSettings) -> Lightmap {
     bake_lightmap(scene, settings, &(), &CancelToken::default()).unwrap()
 }
 
+/// Changes a scene.
+type Edit = fn(&mut Scene);
+
 /// A measured texel: its value before repair and the standard error of that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Measured {
@@ -136,7 +139,7 @@ fn exceeding(answer: &Lightmap, reference: &Texels) -> f64 {
     let answer = texels(answer);
     assert_eq!(answer.len(), reference.len());
     let is_off = |(place, known): &(&(StableId, [u32; 2]), &Measured)| {
-        let granted = luminance(DVec3::from(known.stderr.as_dvec3()));
+        let granted = luminance(known.stderr.as_dvec3());
         (value(&answer[*place]) - value(known)).abs() > TARGET * value(known).max(floor) + granted
     };
     reference.iter().filter(is_off).count() as f64 / reference.len() as f64
@@ -176,7 +179,7 @@ fn a_lamp_in_a_closed_room_is_of_no_interest_elsewhere() {
 
 #[test]
 fn whatever_is_kept_the_error_is_the_one_that_was_asked_for() {
-    let edits: [(&str, fn(&mut Scene)); 4] = [
+    let edits: [(&str, Edit); 4] = [
         ("a lamp moves", |scene| lamp(scene, "lamp west").world_from_local.translation.x -= 0.3),
         ("a lamp dims", |scene| lamp(scene, "lamp middle").radiance *= 0.7),
         ("a wall is painted", |scene| {

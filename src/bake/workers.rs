@@ -15,6 +15,9 @@ const LARGEST_CHUNK: usize = 32;
 /// How many times a thread should come back for more, so that all end at about the same time.
 const TURNS: usize = 8;
 
+/// What was made of a group, and the group's number.
+type OfGroup<T> = (usize, Vec<T>);
+
 /// Threads, and whom they answer to.
 pub(super) struct Workers<'a> {
     pool: rayon::ThreadPool,
@@ -92,7 +95,7 @@ impl<'a> Workers<'a> {
             Some(results)
         };
         let next = AtomicUsize::new(0);
-        let of_thread = |_: rayon::BroadcastContext<'_>| -> Option<Vec<(usize, Vec<T>)>> {
+        let of_thread = |_: rayon::BroadcastContext<'_>| -> Option<Vec<OfGroup<T>>> {
             let mut own = Vec::new();
             loop {
                 let number = next.fetch_add(1, Ordering::Relaxed);
@@ -100,9 +103,8 @@ impl<'a> Workers<'a> {
                 own.push((number, of_group(group)?));
             }
         };
-        let of_threads: Option<Vec<Vec<(usize, Vec<T>)>>> = self.pool.broadcast(of_thread).into_iter().collect();
-        let mut of_groups: Vec<(usize, Vec<T>)> =
-            of_threads.ok_or(BakeError::Cancelled)?.into_iter().flatten().collect();
+        let of_threads: Option<Vec<Vec<OfGroup<T>>>> = self.pool.broadcast(of_thread).into_iter().collect();
+        let mut of_groups: Vec<OfGroup<T>> = of_threads.ok_or(BakeError::Cancelled)?.into_iter().flatten().collect();
         of_groups.sort_unstable_by_key(|&(number, _)| number);
         let results = of_groups.into_iter().flat_map(|(_, results)| results).collect();
         let cpu = tally.lock().map_or(Duration::ZERO, |tally| tally.cpu);
