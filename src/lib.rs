@@ -58,8 +58,9 @@ pub mod trace;
 pub mod prelude {
     #[cfg(feature = "bake")]
     pub use crate::plugin::{
-        AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps,
-        EmissiveUnit, LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver, RangeWindow, SceneSettings,
+        AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, BakeScope, BakeView, CancelBake,
+        ClearLightmaps, EmissiveUnit, LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver, RangeWindow,
+        SceneSettings,
     };
     pub use crate::plugin::{BakedFolder, BakedLightmaps, KilnId, KilnPlugin, KilnSystems, LightmapFiltering};
 }

@@ -5,8 +5,8 @@ mod common;
 
 use bevy_kiln::artefact::StableId;
 use bevy_kiln::bake::{
-    BakeSettings, Baker, CancelToken, Denoise, Goal, Lightmap, LiveSink, Page, Progress, ProgressSink, TexelLayout,
-    TexelState, bake_lightmap,
+    BakeSettings, Baker, CancelToken, Denoise, Goal, Lightmap, LiveSink, Page, Progress, ProgressSink, TexelState,
+    bake_lightmap,
 };
 use bevy_kiln::math::luminance;
 use bevy_kiln::scene::{Light, RectLight, Scene};
@@ -244,8 +244,7 @@ struct Watcher {
 
 #[derive(Default)]
 struct Heard {
-    pages: Vec<[u32; 2]>,
-    previews: Vec<Vec<Page>>,
+    previews: Vec<Lightmap>,
     measured: Vec<(u32, Vec<(u32, Vec3)>)>,
 }
 
@@ -265,12 +264,10 @@ impl LiveSink for Watcher {
         Some(VIEWPOINT)
     }
 
-    fn laid_out(&self, layout: &TexelLayout) {
-        self.heard.lock().unwrap().pages.clone_from(&layout.pages);
-    }
-
-    fn preview(&self, pages: Vec<Page>) {
-        self.heard.lock().unwrap().previews.push(pages);
+    fn preview(&self, coarse: Lightmap) {
+        let mut heard = self.heard.lock().unwrap();
+        assert!(heard.measured.is_empty());
+        heard.previews.push(coarse);
     }
 
     fn measured(&self, page: u32, texels: &[(u32, Vec3)]) {
@@ -289,7 +286,9 @@ fn a_bake_that_is_watched_is_the_same() {
 
     let heard = watcher.heard.into_inner().unwrap();
     let sizes: Vec<[u32; 2]> = watched.pages.iter().map(|page| [page.width, page.height]).collect();
-    assert_eq!((&heard.pages, heard.previews.len()), (&sizes, 1));
+    let [coarse] = &heard.previews[..] else { panic!("{} previews", heard.previews.len()) };
+    assert_eq!(coarse.placements, watched.placements);
+    assert_eq!((&coarse.meshes, &coarse.baked_lights), (&watched.meshes, &watched.baked_lights));
     let mut seen = BTreeMap::new();
     for (page, texels) in &heard.measured {
         for &(index, value) in texels {
@@ -320,6 +319,6 @@ fn a_bake_that_is_watched_is_the_same() {
         };
         pages.iter().map(of_page).sum::<f64>() / watched.report.texels as f64
     };
-    let [coarse, fine] = [&heard.previews[0], &watched.pages].map(|pages| mean(pages));
+    let [coarse, fine] = [coarse, &watched].map(|lightmap| mean(&lightmap.pages));
     assert!((coarse / fine - 1.0).abs() < 0.03, "{coarse} {fine}");
 }

@@ -10,6 +10,8 @@ mod filtering;
 mod glb;
 #[path = "plugin/lights.rs"]
 mod lights;
+#[path = "plugin/live.rs"]
+mod live;
 #[path = "plugin/materials.rs"]
 mod materials;
 #[path = "plugin/meshes.rs"]

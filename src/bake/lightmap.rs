@@ -16,7 +16,6 @@ use super::unwrap::{LaidOut, LaidOutMesh};
 use super::workers::{Work, Workers};
 use super::{
     BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, Goal, Intervals, LiveSink, ProgressSink, Stage,
-    TexelLayout,
 };
 use crate::artefact::StableId;
 use crate::scene::{Fault, Light, Scene};
@@ -136,19 +135,27 @@ pub(super) fn bake<'a>(
     let first_pass =
         Place { tracer: &tracer, atlas: &atlas, sites: &sites }.first_pass(FIRST_PATHS, settings, &workers)?;
     let tiles = tiles(&sites, tracer.sharing(&settings.transport));
+    let coarse = Coarse { laid_out: &laid_out, atlas: &atlas, hidden: &hidden, workers: &workers };
+    let to_preview = Upcoming {
+        scene,
+        settings,
+        tracer: &tracer,
+        sites: &sites,
+        tiles: &tiles,
+        until: Until::Samples(PREVIEW_PATHS),
+    };
+    if earlier.is_none() {
+        coarse.preview(&to_preview, &vec![None; tiles.len()])?;
+    }
     let surveyed = Surveyed { tiles: &tiles, sites: &sites, tracer: &tracer };
     let until = until(settings, earlier, &surveyed, &workers, clock)?;
-    let upcoming = Upcoming { scene, settings, tracer: &tracer, sites: &sites, tiles: &tiles, until };
+    let upcoming = Upcoming { until, ..to_preview };
     let kept = match earlier {
         Some(earlier) => earlier.kept(&upcoming, &workers)?,
         None => vec![None; tiles.len()],
     };
-    if let Some(live) = workers.live() {
-        live.laid_out(&TexelLayout::of(&laid_out, &atlas));
-        let known = measure(&Upcoming { until: Until::Samples(PREVIEW_PATHS), ..upcoming }, &kept, None, &workers)?;
-        let mut fields = fields(&atlas, &sites, &known.results, &hidden);
-        repair_for_preview(&mut fields, settings, &workers)?;
-        live.preview(pages(fields, &sites, &known.results));
+    if earlier.is_some() {
+        coarse.preview(&to_preview, &kept)?;
     }
     let work = measure(&upcoming, &kept, workers.live(), &workers)?;
     let balance = energy_balance(&tracer, &sites, &work.results, &settings.transport, &workers)?;
@@ -173,15 +180,47 @@ pub(super) fn bake<'a>(
         kept: earlier.map(|_| tiles.iter().zip(&kept).map(is_kept).sum()),
         ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings).with(first_pass)
     };
-    let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));
-    let baked_lights = scene.lights.iter().filter(is_baked).map(|light| light.id().clone());
-    let mut baked_lights: Vec<StableId> = baked_lights.collect();
-    baked_lights.sort();
+    let baked_lights = baked_lights(scene, &tracer);
     let placements = placements(&laid_out, &atlas);
     drop(atlas);
     let drift = kept.iter().map(|kept| kept.as_ref().map_or(0.0, |kept| kept.drift)).collect();
     let measured = Measured { sites, tiles, estimates: work.results, drift };
     Ok((Lightmap { placements, pages, meshes: laid_out.meshes, baked_lights, report }, laid_out.scene, until, measured))
+}
+
+/// What a preview is made of.
+struct Coarse<'a> {
+    laid_out: &'a LaidOut<'a>,
+    atlas: &'a Atlas<'a>,
+    hidden: &'a [Covered],
+    workers: &'a Workers<'a>,
+}
+
+impl Coarse<'_> {
+    /// Shows the map by a few paths, if anybody watches.
+    fn preview(&self, upcoming: &Upcoming<'_>, kept: &[Option<Kept>]) -> Result<(), BakeError> {
+        let Some(live) = self.workers.live() else { return Ok(()) };
+        let Upcoming { scene, settings, tracer, sites, .. } = *upcoming;
+        let work = measure(upcoming, kept, None, self.workers)?;
+        let mut fields = fields(self.atlas, sites, &work.results, self.hidden);
+        repair_for_preview(&mut fields, settings, self.workers)?;
+        live.preview(Lightmap {
+            pages: pages(fields, sites, &work.results),
+            placements: placements(self.laid_out, self.atlas),
+            meshes: self.laid_out.meshes.clone(),
+            baked_lights: baked_lights(scene, tracer),
+            report: BakeReport::default(),
+        });
+        Ok(())
+    }
+}
+
+/// Lights whose direct light texels hold, ordered by id.
+fn baked_lights(scene: &Scene, tracer: &Tracer) -> Vec<StableId> {
+    let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));
+    let mut baked: Vec<StableId> = scene.lights.iter().filter(is_baked).map(|light| light.id().clone()).collect();
+    baked.sort();
+    baked
 }
 
 /// What the goal comes down to in this scene. A time comes down to the error of the bake before, if there was one.

@@ -1,8 +1,7 @@
-//! Watching a bake: its texels as they are measured, coarse ones first and near ones before far ones. What is seen so is
+//! Watching a bake: the whole map in coarse first, then texels as they are measured, near ones before far ones. What is seen so is
 //! for the eye; nothing of it changes a finished texel.
 
-use super::TexelLayout;
-use super::lightmap::Page;
+use super::Lightmap;
 use super::sites::Site;
 use super::tiles::Tile;
 use glam::Vec3;
@@ -17,12 +16,10 @@ pub trait LiveSink: Sync {
         None
     }
 
-    /// Where texels will lie: the first that is heard.
-    fn laid_out(&self, layout: &TexelLayout);
-
-    /// All texels by a few paths, repaired but for seams. Once, before any texel is measured in full; in a bake that
-    /// keeps texels of the one before, these are in it.
-    fn preview(&self, pages: Vec<Page>);
+    /// The whole map by a few paths, repaired but for seams, without a report. Once, before any texel is measured in full;
+    /// in a bake that keeps texels of the one before, these are in it. Sizes, places and meshes are those of the
+    /// finished map.
+    fn preview(&self, coarse: Lightmap);
 
     /// Texels of a page that are measured, before repair: places row by row, and E/π [cd/m²].
     fn measured(&self, page: u32, texels: &[(u32, Vec3)]);

@@ -59,9 +59,9 @@ pub use display::{
 
 #[cfg(feature = "bake")]
 pub use baking::{
-    AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps,
-    EmissiveUnit, Extraction, ExtractionWarning, LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver,
-    RangeWindow, SceneSettings, Unreadable, Unsimulated, extract_scene,
+    AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, BakeScope, BakeView, CancelBake,
+    ClearLightmaps, EmissiveUnit, Extraction, ExtractionWarning, LightBlocker, LightmapFormat, LightmapLayout,
+    LightmapReceiver, RangeWindow, SceneSettings, Unreadable, Unsimulated, extract_scene,
 };
 
 use bevy::prelude::*;

@@ -64,6 +64,30 @@ pub enum LightmapFormat {
     Rgba16f,
 }
 
+/// How much is measured when a scene is baked once more.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default, Debug, PartialEq, Clone)]
+pub enum BakeScope {
+    /// What changes since the last bake of the same settings reach, to within a quarter of the error that is asked for;
+    /// the rest is kept. What is remembered for that takes about as much memory as the bake, until
+    /// [`ClearLightmaps`].
+    #[default]
+    Changes,
+    /// Everything: the same bits as from the command line.
+    Everything,
+}
+
+/// What is seen of a bake while it runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default, Debug, PartialEq, Clone)]
+pub enum BakeView {
+    /// Its texels as they come: all in coarse first, then those near the camera before those far off.
+    #[default]
+    Live,
+    /// Nothing until it is done.
+    WhenDone,
+}
+
 /// Asks for a bake of the world as it is at the end of the frame. The game runs on; when the lightmaps are done
 /// they go on the entities, and [`BakeFinished`] is triggered. One bake runs at a time.
 #[derive(Event, Clone, Debug, PartialEq, Reflect)]
@@ -97,6 +121,10 @@ pub struct BakeLightmaps {
     /// Effects that are simulated, or not, whatever the scene calls for.
     #[reflect(ignore)]
     pub effects: ForcedEffects,
+    /// How much is measured when a scene is baked once more.
+    pub scope: BakeScope,
+    /// What is seen of the bake while it runs.
+    pub view: BakeView,
     /// Threads that trace; 0 for all cores.
     pub threads: u32,
     /// How the textures hold their texels.
@@ -119,6 +147,8 @@ impl Default for BakeLightmaps {
             seed: core.transport.seed,
             clamp: core.transport.clamp,
             effects: core.transport.effects,
+            scope: BakeScope::default(),
+            view: BakeView::default(),
             threads: 0,
             format: LightmapFormat::default(),
         }
@@ -208,6 +238,8 @@ impl From<Progress> for BakeProgress {
 pub struct BakeFinished {
     /// Covered texels.
     pub texels: u64,
+    /// Of these, those that were kept from the bake before, since no change reaches them.
+    pub kept: u64,
     /// Paths that started from them.
     pub samples: u64,
     /// Time that passed [s].

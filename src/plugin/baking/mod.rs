@@ -3,13 +3,14 @@
 mod events;
 mod extract;
 mod job;
+mod live;
 mod markers;
 mod settings;
 mod write_back;
 
 pub use events::{
-    BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, CancelBake, ClearLightmaps, LightmapFormat,
-    LightmapLayout,
+    BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, BakeScope, BakeView, CancelBake, ClearLightmaps,
+    LightmapFormat, LightmapLayout,
 };
 pub use extract::{Extraction, ExtractionWarning, Unreadable, Unsimulated, extract_scene};
 pub use markers::{LightBlocker, LightmapReceiver};

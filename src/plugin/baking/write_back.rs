@@ -74,6 +74,22 @@ pub(super) fn write_back(world: &mut World, finished: &Finished) -> Written {
     written
 }
 
+/// Shows other texels in the textures that are on show, by the numbers of their pages.
+pub(super) fn show_texels(world: &mut World, pages: Vec<(usize, Vec<u8>)>) {
+    let Some(shown) = world.get_resource::<OnShow>() else { return };
+    let textures: Vec<(Handle<Image>, Vec<u8>)> =
+        pages.into_iter().filter_map(|(page, bytes)| Some((shown.pages.get(page)?.clone(), bytes))).collect();
+    let Some(mut assets) = world.get_resource_mut::<Assets<Image>>() else { return };
+    for (texture, bytes) in textures {
+        // Another bake's textures may be of another size by now; such news is old.
+        if let Some(mut image) = assets.get_mut(&texture)
+            && image.data.as_ref().is_some_and(|data| data.len() == bytes.len())
+        {
+            image.data = Some(bytes);
+        }
+    }
+}
+
 /// Takes everything off again that [`write_back`] has put on.
 pub(super) fn clear(world: &mut World) {
     let Some(shown) = world.remove_resource::<OnShow>() else { return };
@@ -84,7 +100,7 @@ pub(super) fn clear(world: &mut World) {
     restore_ambient(world, shown.ambient_flag);
 }
 
-fn texel_format(format: LightmapFormat) -> TexelFormat {
+pub(super) fn texel_format(format: LightmapFormat) -> TexelFormat {
     match format {
         LightmapFormat::Rgb9e5 => TexelFormat::Rgb9e5,
         LightmapFormat::Rgba16f => TexelFormat::Rgba16f,
