@@ -169,7 +169,7 @@ fn the_table_has_every_point() {
     assert!(rows.iter().all(|row| row.len() == 5));
     assert_eq!(rows[1][..2], ["mis", "16"]);
     assert!((rows[1][3].parse::<f64>().unwrap() - 0.16).abs() < 1e-6);
-    assert_eq!(csv.matches("near_reference").count(), 7);
+    assert_eq!(csv.matches("near_reference").count(), 8);
 }
 
 /// What was too short to be known is said, and nothing is drawn of it.
