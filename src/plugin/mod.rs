@@ -10,10 +10,10 @@
 //!
 //! fn bake(keys: Res<ButtonInput<KeyCode>>, mut commands: Commands) {
 //!     if keys.just_pressed(KeyCode::KeyB) {
-//!         commands.trigger(BakeLightmaps::default()); // 256 paths per texel, 16 texels per metre, as displayed
+//!         commands.trigger(BakeLightmaps::default()); // to 2 %, 16 texels per metre, as displayed
 //!     }
 //!     if keys.just_pressed(KeyCode::Escape) {
-//!         commands.trigger(CancelBake); // the world stays as it was
+//!         commands.trigger(CancelBake); // the world is again as it was
 //!     }
 //!     if keys.just_pressed(KeyCode::KeyC) {
 //!         commands.trigger(ClearLightmaps); // lightmaps off, lights back
@@ -33,6 +33,10 @@
 //! Mark what shall receive a lightmap with [`LightmapReceiver`] and what only blocks and reflects with
 //! [`LightBlocker`], on the thing or on anything above it; without a receiver anywhere every mesh receives. What
 //! a folder of the `kiln` command holds goes on a scene as [`BakedLightmaps`] beside its root.
+//!
+//! A bake shows itself while it runs ([`BakeView`]): the whole map in coarse first, then finished texels, those near the
+//! camera before those far off. Bake again after moving a lamp or adding a chair, and only what that reaches is measured
+//! ([`BakeScope`]).
 //!
 //! A mesh without a usable second UV set is given one by the bake, which splits it along the borders of its charts.
 //! While the bake is shown, the entity's `Mesh3d` holds such a copy; it gets its own mesh back with `ClearLightmaps` or

@@ -191,7 +191,7 @@ impl BakeLightmaps {
     }
 }
 
-/// Stops the running bake. The world stays as it was, and [`BakeFailed`] says that it was cancelled.
+/// Stops the running bake. What was shown before it comes back, and [`BakeFailed`] says that it was cancelled.
 #[derive(Event, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Event, Default, Debug, PartialEq, Clone)]
 pub struct CancelBake;
