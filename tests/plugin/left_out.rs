@@ -106,8 +106,8 @@ fn what_is_skinned_or_morphed_is_left_out_by_name_unless_marked() {
     assert_eq!(names(&found), ["cube"]);
     let sentence = |name: &str, how: &str| {
         format!(
-            "mesh \"{name}\" is {how}, so it is left out, as what moves should be; mark it as a LightBlocker to bake it \
-             as it stands"
+            "mesh \"{name}\" is {how}, so it is left out, as what moves should be; mark it as a LightBlocker to bake \
+             it as it stands"
         )
     };
     assert_eq!(said(&found), [sentence("body", "skinned"), sentence("face", "morphed")]);

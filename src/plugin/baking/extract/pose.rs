@@ -68,7 +68,7 @@ pub(super) fn strike(
 /// Adds the displacements: all vertices of the first target, then all of the next.
 fn morph(mesh: &mut scene::Mesh, targets: &[MorphAttributes], weights: &[f32]) -> Result<(), &'static str> {
     let vertices = mesh.positions.len();
-    if vertices == 0 || targets.len() % vertices != 0 || targets.len() / vertices < weights.len() {
+    if vertices == 0 || !targets.len().is_multiple_of(vertices) || targets.len() / vertices < weights.len() {
         return Err("has fewer morph targets than weights for them");
     }
     for (target, &weight) in targets.chunks_exact(vertices).zip(weights) {
