@@ -8,6 +8,8 @@ mod filtering;
 #[allow(dead_code, reason = "the command line's tests use the rest of it")]
 #[path = "support/glb.rs"]
 mod glb;
+#[path = "plugin/left_out.rs"]
+mod left_out;
 #[path = "plugin/lights.rs"]
 mod lights;
 #[path = "plugin/live.rs"]

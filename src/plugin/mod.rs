@@ -38,6 +38,10 @@
 //! camera before those far off. Bake again after moving a lamp or adding a chair, and only what that reaches is measured
 //! ([`BakeScope`]).
 //!
+//! What is left out is named. A skinned or morphed mesh takes part only where a mark asks for it: it then blocks light
+//! in the pose in which it stands. Things on other render layers than [`SceneSettings::layers`] (0) take no part. Light
+//! passes through what has `NotShadowCaster`, which therefore reflects none.
+//!
 //! A mesh without a usable second UV set is given one by the bake, which splits it along the borders of its charts.
 //! While the bake is shown, the entity's `Mesh3d` holds such a copy; it gets its own mesh back with `ClearLightmaps` or
 //! when [`BakedLightmaps`] goes. A game that changes a mesh after its bake sees the change when it is baked again.

@@ -14,7 +14,7 @@ pub struct LightmapReceiver {
 }
 
 /// What is on or below this entity blocks and reflects light and gets no lightmap. The nearest mark above a mesh
-/// holds.
+/// holds. A skinned or morphed mesh takes part only where a mark asks for it, in the pose in which it stands.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility)]

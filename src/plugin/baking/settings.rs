@@ -1,6 +1,7 @@
 //! How a Bevy scene is read: the questions to which its data alone has no answer.
 
 use crate::math::Portable;
+use bevy::camera::visibility::RenderLayers;
 use bevy::prelude::*;
 
 /// Exposure value at ISO 100 of a Bevy camera that nobody has touched.
@@ -77,6 +78,9 @@ pub struct SceneSettings {
     /// radiance [cd/m²], as Bevy loads it from an `.hdr` or `.exr` file; or a cube. Up is +Y, its middle +X, a quarter
     /// from its left edge -Z.
     pub environment: Option<Handle<Image>>,
+    /// What takes part: meshes and lights on one of these render layers, which is layer 0 for all that have no
+    /// `RenderLayers`. Within them every light shines on everything.
+    pub layers: RenderLayers,
 }
 
 #[cfg(test)]

@@ -1,11 +1,10 @@
 //! `Mesh3d` into meshes and instances.
 
-use super::{Extraction, ExtractionWarning, Thing, material};
+use super::{Extraction, ExtractionWarning, Thing, material, pose, shadow_flags};
 use crate::plugin::baking::SceneSettings;
 use crate::plugin::display::{numbers, own_mesh};
 use crate::scene::{self, Instance, LightmapRequest, Topology};
-use bevy::mesh::morph::MeshMorphWeights;
-use bevy::mesh::skinning::SkinnedMesh;
+use bevy::math::Affine3A;
 use bevy::mesh::{Indices, MeshVertexAttribute, PrimitiveTopology, VertexAttributeValues};
 use bevy::prelude::*;
 
@@ -13,36 +12,49 @@ use bevy::prelude::*;
 pub(super) fn extract(
     world: &World,
     thing: &Thing,
-    mut request: Option<LightmapRequest>,
+    request: Option<LightmapRequest>,
     settings: &SceneSettings,
     out: &mut Extraction,
 ) {
     // Not what an earlier bake made of it, so that a second bake is the same as the first.
     let Some(mesh) = world.get_entity(thing.entity).ok().and_then(own_mesh) else { return };
-    let Some(mesh) = place_mesh(world, thing, mesh, out) else { return };
-    if let Some(how) = deformation(world, thing.entity) {
-        out.warnings.push(ExtractionWarning::Deformed { name: thing.name.clone(), how });
-        request = None;
-    }
+    let placed = if pose::deformation(world, thing.entity).is_some() {
+        place_posed(world, thing, mesh, out)
+    } else {
+        let affine = world.get::<GlobalTransform>(thing.entity).copied().unwrap_or_default().affine();
+        place_mesh(world, thing, mesh, out).map(|mesh| (mesh, affine))
+    };
+    let Some((mesh, world_from_local)) = placed else { return };
     let placed = material::place(world, thing, settings, out);
-    let transform = world.get::<GlobalTransform>(thing.entity).copied().unwrap_or_default();
+    let material = shadow_flags::heed(world, thing, placed.index, out);
     out.scene.instances.push(Instance {
         id: thing.id.clone(),
         name: thing.name.clone(),
         mesh,
-        material: placed.index,
-        world_from_local: transform.affine(),
+        material,
+        world_from_local,
         lightmap: request.filter(|_| placed.shows_lightmaps),
     });
 }
 
-fn deformation(world: &World, entity: Entity) -> Option<&'static str> {
-    if world.get::<SkinnedMesh>(entity).is_some() {
-        Some("skinned")
-    } else if world.get::<MeshMorphWeights>(entity).is_some() {
-        Some("morphed")
-    } else {
-        None
+/// A mesh of its own for a thing that is posed, and its place in the world.
+fn place_posed(world: &World, thing: &Thing, handle: &Handle<Mesh>, out: &mut Extraction) -> Option<(usize, Affine3A)> {
+    let posed = read(world, thing, handle, &mut out.warnings).and_then(|mut mesh| {
+        let source = world.get_resource::<Assets<Mesh>>().and_then(|meshes| meshes.get(handle));
+        let source = source.ok_or_else(|| ExtractionWarning::MeshNotLoaded { name: thing.name.clone() })?;
+        let place = pose::strike(world, thing.entity, source, &mut mesh);
+        let not_read = |why| ExtractionWarning::PoseNotRead { name: thing.name.clone(), why };
+        place.map(|place| (mesh, place)).map_err(not_read)
+    });
+    match posed {
+        Ok((mesh, place)) => {
+            out.scene.meshes.push(mesh);
+            Some((out.scene.meshes.len() - 1, place))
+        }
+        Err(warning) => {
+            out.warnings.push(warning);
+            None
+        }
     }
 }
 

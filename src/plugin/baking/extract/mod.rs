@@ -8,6 +8,8 @@ mod environment;
 mod light;
 mod material;
 mod mesh;
+mod pose;
+mod shadow_flags;
 mod texture;
 mod warning;
 
@@ -19,6 +21,7 @@ use super::settings::SceneSettings;
 use crate::artefact::StableId;
 use crate::plugin::stable_id;
 use crate::scene::{LightmapRequest, Scene, unique_ids};
+use bevy::camera::visibility::RenderLayers;
 use bevy::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 
@@ -45,8 +48,9 @@ struct Seen {
 /// Reads the world as it stands; its transforms and visibility must have been propagated, as they are in `Last`.
 pub fn extract_scene(world: &mut World, settings: &SceneSettings) -> Extraction {
     let mut out = Extraction::default();
-    let lights = light::find(world);
-    let meshes = find_meshes(world, &mut out.warnings);
+    let lights = light::find(world, settings, &mut out.warnings);
+    let meshes = find_meshes(world, settings, &mut out.warnings);
+    out.warnings.sort_by_cached_key(ToString::to_string);
     let things: Vec<Thing> = meshes.into_iter().chain(lights).collect();
     for thing in name_all(world, things, &mut out) {
         match thing.kind {
@@ -111,24 +115,38 @@ fn name_all(world: &World, mut things: Vec<Thing>, out: &mut Extraction) -> Vec<
 }
 
 /// The meshes that take part, as their marks say.
-fn find_meshes(world: &mut World, warnings: &mut Vec<ExtractionWarning>) -> Vec<Thing> {
+fn find_meshes(world: &mut World, settings: &SceneSettings, warnings: &mut Vec<ExtractionWarning>) -> Vec<Thing> {
     let only_marked = world.query_filtered::<(), With<LightmapReceiver>>().iter(world).next().is_some();
     let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
     let meshes: Vec<Entity> = meshes.iter(world).collect();
     let world = &*world;
     let mut things = Vec::new();
     for entity in meshes.into_iter().filter(|&entity| is_visible(world, entity)) {
-        let role = match nearest_mark(world, entity) {
-            None if only_marked => continue,
-            None => Some(LightmapRequest::default()),
-            Some(mark) => mark,
-        };
-        let thing = Thing::new(world, entity, Kind::Mesh(role));
-        if is_distant_lod(world, entity) {
-            warnings.push(ExtractionWarning::DistantLevelOfDetail { name: thing.name });
+        let mark = nearest_mark(world, entity);
+        if only_marked && mark.is_none() {
             continue;
         }
-        things.push(thing);
+        let mut role = mark.unwrap_or_else(|| Some(LightmapRequest::default()));
+        let name = stable_id(world, entity).as_str().to_owned();
+        if is_distant_lod(world, entity) {
+            warnings.push(ExtractionWarning::DistantLevelOfDetail { name });
+            continue;
+        }
+        if !is_on_layers(world, entity, settings) {
+            warnings.push(ExtractionWarning::OtherLayers { name });
+            continue;
+        }
+        if let Some(how) = pose::deformation(world, entity) {
+            // A character that walks on must not leave its shadow behind.
+            if mark.is_none() {
+                warnings.push(ExtractionWarning::Deformed { name, how });
+                continue;
+            }
+            if role.take().is_some() {
+                warnings.push(ExtractionWarning::Posed { name, how });
+            }
+        }
+        things.push(Thing::new(world, entity, Kind::Mesh(role)));
     }
     things
 }
@@ -150,6 +168,12 @@ fn nearest_mark(world: &World, entity: Entity) -> Option<Option<LightmapRequest>
 
 fn is_visible(world: &World, entity: Entity) -> bool {
     world.get::<InheritedVisibility>(entity).is_none_or(|visibility| visibility.get())
+}
+
+/// As for Bevy's cameras and lights: a thing without layers is on layer 0, and those above it have no say.
+fn is_on_layers(world: &World, entity: Entity, settings: &SceneSettings) -> bool {
+    let layers = world.get::<RenderLayers>(entity).cloned().unwrap_or_default();
+    layers.intersects(&settings.layers)
 }
 
 fn is_distant_lod(world: &World, entity: Entity) -> bool {

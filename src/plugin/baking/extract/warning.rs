@@ -86,13 +86,50 @@ pub enum ExtractionWarning {
         /// The first such vertex.
         vertex: usize,
     },
-    /// The mesh is skinned or morphed.
-    #[error("mesh \"{name}\" is {how}, so it takes part in its rest shape and gets no lightmap")]
+    /// The mesh is skinned or morphed, and no mark asks for it.
+    #[error(
+        "mesh \"{name}\" is {how}, so it is left out, as what moves should be; mark it as a LightBlocker to bake it as \
+         it stands"
+    )]
     Deformed {
         /// The entity.
         name: String,
         /// Skinned or morphed.
         how: &'static str,
+    },
+    /// The mesh is skinned or morphed and below a `LightmapReceiver`.
+    #[error("mesh \"{name}\" is {how}, so it gets no lightmap; it blocks and reflects light as it stands")]
+    Posed {
+        /// The entity.
+        name: String,
+        /// Skinned or morphed.
+        how: &'static str,
+    },
+    /// The pose of a skinned or morphed mesh cannot be read.
+    #[error("mesh \"{name}\" {why}, so its pose is not known and it is left out")]
+    PoseNotRead {
+        /// The entity.
+        name: String,
+        /// What is wrong.
+        why: &'static str,
+    },
+    /// The thing is on other render layers than those that are baked.
+    #[error(
+        "\"{name}\" is on render layers that are not baked, so it is left out; SceneSettings::layers says which are"
+    )]
+    OtherLayers {
+        /// The entity.
+        name: String,
+    },
+    /// How Bevy draws shadows there has no match in light.
+    #[error("mesh \"{name}\" has {component}: {consequence}")]
+    ShadowFlag {
+        /// The entity.
+        name: String,
+        /// The component.
+        component: &'static str,
+        /// What is baked.
+        consequence: &'static str,
     },
     /// The mesh is a coarser level of detail.
     #[error("mesh \"{name}\" is shown from a distance only (VisibilityRange), so it is left out")]

@@ -4,8 +4,9 @@ mod directional;
 mod punctual;
 mod rect;
 
-use super::{Extraction, ExtractionWarning, Kind, Thing, is_visible};
+use super::{Extraction, ExtractionWarning, Kind, Thing, is_on_layers, is_visible};
 use crate::plugin::baking::{RangeWindow, SceneSettings};
+use crate::plugin::stable_id;
 use bevy::light::{DirectionalLightTexture, PointLight, PointLightTexture, RectLight, SpotLight, SpotLightTexture};
 use bevy::math::Affine3A;
 use bevy::prelude::*;
@@ -24,7 +25,7 @@ pub(super) enum LightKind {
 const LOADERS_RANGE: f32 = 20.0;
 
 /// The lights that take part.
-pub(super) fn find(world: &mut World) -> Vec<Thing> {
+pub(super) fn find(world: &mut World, settings: &SceneSettings, warnings: &mut Vec<ExtractionWarning>) -> Vec<Thing> {
     let mut lights = world.query::<(Entity, Has<RectLight>, Has<PointLight>, Has<SpotLight>, Has<DirectionalLight>)>();
     let mut found = Vec::new();
     for (entity, rect, point, spot, directional) in lights.iter(world) {
@@ -38,7 +39,10 @@ pub(super) fn find(world: &mut World) -> Vec<Thing> {
     }
     let world = &*world;
     let visible = found.into_iter().filter(|&(entity, _)| is_visible(world, entity));
-    visible.map(|(entity, kind)| Thing::new(world, entity, Kind::Light(kind))).collect()
+    let (taken, left): (Vec<_>, Vec<_>) = visible.partition(|&(entity, _)| is_on_layers(world, entity, settings));
+    let name = |(entity, _)| stable_id(world, entity).as_str().to_owned();
+    warnings.extend(left.into_iter().map(|light| ExtractionWarning::OtherLayers { name: name(light) }));
+    taken.into_iter().map(|(entity, kind)| Thing::new(world, entity, Kind::Light(kind))).collect()
 }
 
 /// Adds one light.
