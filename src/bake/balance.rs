@@ -23,7 +23,8 @@ const POINTS: usize = 1024;
 /// Paths from each of them.
 const PATHS_PER_POINT: u32 = 64;
 
-/// Absorbed over emitted flux, by luminance; `None` for an open scene, one under a sky or with a cap on bounces.
+/// Absorbed over emitted flux, by luminance; `None` for an open scene, one under a sky, with a cap on bounces
+/// or with lights that are drawn in real time.
 pub(super) fn energy_balance(
     tracer: &Tracer,
     sites: &[Site],
@@ -34,7 +35,8 @@ pub(super) fn energy_balance(
     let Some(emitted) = tracer.emitted_flux() else {
         return Ok(None);
     };
-    let loses_light = transport.max_bounces.is_some() || transport.clamp.is_some();
+    let loses_light =
+        transport.max_bounces.is_some() || transport.clamp.is_some() || tracer.leaves_direct_light_to_others();
     if loses_light || !tracer.is_diffuse() || !tracer.is_closed(WALKS, transport.seed) {
         return Ok(None);
     }

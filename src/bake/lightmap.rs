@@ -217,7 +217,10 @@ impl Coarse<'_> {
 
 /// Lights whose direct light texels hold, ordered by id.
 fn baked_lights(scene: &Scene, tracer: &Tracer) -> Vec<StableId> {
-    let is_baked = |light: &&Light| light.faults().is_empty() && tracer.effects().has(effect_of(light));
+    let is_baked = |light: &&Light| {
+        let is_lit_by_texels = light.faults().is_empty() && !scene.indirect_only.contains(light.id());
+        is_lit_by_texels && tracer.effects().has(effect_of(light))
+    };
     let mut baked: Vec<StableId> = scene.lights.iter().filter(is_baked).map(|light| light.id().clone()).collect();
     baked.sort();
     baked

@@ -15,7 +15,7 @@ use super::sites::Site;
 use super::workers::Workers;
 use super::{BakeError, BakeSettings, CancelToken, LaterBounces, REPLICATES};
 use crate::math::combine;
-use crate::trace::{Effect, KnownCell, KnownGrid, KnownLight, Tracer, Transport, Unfolded};
+use crate::trace::{Effect, KnownCell, KnownGrid, KnownLight, Sobol, Tracer, Transport, Unfolded};
 use cpu_time::ThreadTime;
 use std::time::Duration;
 
@@ -98,7 +98,11 @@ impl Place<'_> {
         let of_site = |site: &Site, cancel: &CancelToken| {
             let clock = ThreadTime::now();
             let mut runs = site.runs_with(combine(site.covered.key, FIRST_PASS), transport);
-            site.carry_on(&mut runs, self.tracer, paths, transport, cancel)?;
+            // All light, whoever draws it: what a path meets here it is to take on.
+            runs.extend(paths, Sobol::new, cancel, |sobol, start, tally| {
+                let start = site.start(self.tracer, sobol, start)?;
+                Some(self.tracer.diffuse_radiance(&start, sobol, transport, tally))
+            })?;
             Some((runs.estimate(), clock.elapsed()))
         };
         let (estimates, times): (Vec<Estimate>, Vec<Duration>) =

@@ -47,7 +47,7 @@ impl Site {
         tally: &mut Tally,
     ) -> Option<Vec3> {
         let start = self.start(tracer, numbers, start)?;
-        Some(tracer.diffuse_radiance(&start, numbers, transport, tally))
+        Some(tracer.baked_radiance(&start, numbers, transport, tally))
     }
 
     /// Where a path starts, a place on the texel that can be reached from its anchor; `None` where the numbers say

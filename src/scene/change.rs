@@ -76,7 +76,9 @@ impl Change {
         };
         let lights = |scene| -> BTreeMap<StableId, &Light> { by_id(scene, |s: &Scene| &s.lights, Light::id) };
         for (id, lights) in paired(lights(before), lights(after)) {
-            if !matches!(lights, [Some(a), Some(b)] if without_name(a) == without_name(b)) {
+            let is_drawn = [before, after].map(|scene| scene.indirect_only.contains(&id));
+            let is_same = matches!(lights, [Some(a), Some(b)] if without_name(a) == without_name(b));
+            if !is_same || is_drawn[0] != is_drawn[1] {
                 change.lights.insert(id);
             }
         }
@@ -284,6 +286,9 @@ mod tests {
             of_surfaces
         );
         assert_eq!(after(|scene| scene.lights.clear()), Change { lights: ids(&["bulb"]), ..Change::default() });
+        let bulb = StableId::new("bulb");
+        let of_bulb = Change { lights: ids(&["bulb"]), ..Change::default() };
+        assert_eq!(after(|scene| assert!(scene.indirect_only.insert(bulb))), of_bulb);
         assert_eq!(after(|scene| scene.sky_radiance = Vec3::ONE), Change { sky: true, ..Change::default() });
         // A texture that changes its place in the material, with nothing else.
         let standard = |at_roughness: bool| Material {

@@ -27,7 +27,9 @@ pub use material::{Alpha, Interior, Material, NormalEncoding, NormalMap, Scatter
 pub use mesh::{Indices, Instance, LightmapRequest, Mesh, Topology};
 pub use texture::{Filter, Texels, Texture, TextureRef, UvChannel, Wrap};
 
+use crate::artefact::StableId;
 use glam::Vec3;
+use std::collections::BTreeSet;
 
 /// Everything that light meets, and everything that gives light.
 #[derive(Clone, Debug, Default)]
@@ -42,6 +44,8 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// Light sources that are no meshes.
     pub lights: Vec<Light>,
+    /// Ids of those whose direct light is drawn in real time: lightmaps hold only what surfaces send on of it.
+    pub indirect_only: BTreeSet<StableId>,
     /// Radiance of a sky that is the same in every direction [cd/m²]. Black is no sky.
     pub sky_radiance: Vec3,
     /// A picture of the sky, on top of `sky_radiance`.

@@ -71,9 +71,13 @@ impl Compiled {
         }
         world.move_to_traced_frame();
         world.add_emitters();
+        let is_drawn = |light: &Light| scene.indirect_only.contains(light.id());
+        if lights.iter().any(|light| is_drawn(light)) {
+            world.part_baked_sources();
+        }
         for light in lights {
             if effects.has(effect_of(light)) {
-                world.add_light(light);
+                world.add_light(light, is_drawn(light));
             }
         }
         if let Some(map) =

@@ -56,6 +56,19 @@ impl Tracer {
         with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).receive(start))
     }
 
+    /// The same as a lightmap is to hold it: without the direct light of [`Scene::indirect_only`].
+    ///
+    /// [`Scene::indirect_only`]: crate::scene::Scene::indirect_only
+    pub(crate) fn baked_radiance(
+        &self,
+        start: &PathStart,
+        sampler: &impl Sampler,
+        transport: &Transport,
+        tally: &mut Tally,
+    ) -> Vec3 {
+        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).for_texel().receive(start))
+    }
+
     /// The same, as far as it can serve other receivers apart from what cannot.
     pub(crate) fn find(
         &self,
@@ -64,7 +77,7 @@ impl Tracer {
         transport: &Transport,
         tally: &mut Tally,
     ) -> Found<'_> {
-        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).find(start))
+        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).for_texel().find(start))
     }
 
     /// Radiance that arrives against `direction` at `origin`, a point of the world, along a camera's ray [cd/m²].

@@ -42,6 +42,8 @@ pub struct Tracer {
     /// Per emitter, its (first) triangle or [`NO_TRIANGLE`].
     pub(super) triangle_of: Vec<u32>,
     pub(super) lights: Lights,
+    /// Those whose direct light lightmaps hold, with the same numbers for surfaces; `None` where it is that of all.
+    pub(super) baked_lights: Option<Lights>,
     pub(super) sky_radiance: Vec3,
     /// Length of the diagonal of the scene's bounds [m].
     pub(super) extent: f32,
@@ -122,6 +124,11 @@ impl Tracer {
     /// Whether anything gives light.
     pub(crate) fn has_light(&self) -> bool {
         !self.lights.is_empty() || self.sky_radiance != Vec3::ZERO
+    }
+
+    /// Whether the direct light of any source is drawn in real time, so that lightmaps do without it.
+    pub(crate) fn leaves_direct_light_to_others(&self) -> bool {
+        self.baked_lights.is_some()
     }
 
     /// Triangles in the world.

@@ -177,6 +177,7 @@ impl<'a> LaidOut<'a> {
             meshes: kept.chain(behind).collect(),
             instances,
             materials: scene.materials.clone(),
+            indirect_only: scene.indirect_only.clone(),
             textures: scene.textures.clone(),
             lights: scene.lights.clone(),
             environment: scene.environment.clone(),

@@ -30,6 +30,8 @@ pub(super) struct World {
     view: View,
     tracer: Tracer,
     sources: Sources,
+    /// Sources but for those whose direct light is drawn in real time; `None` while there is none of these.
+    baked_sources: Option<Sources>,
     shapes: u64,
 }
 
@@ -61,6 +63,7 @@ impl World {
             emitter_of: Vec::new(),
             triangle_of: Vec::new(),
             lights: Sources::default().into_lights(),
+            baked_lights: None,
             sky_radiance: Vec3::ZERO,
             extent: 0.0,
             receivers: Vec::new(),
@@ -68,7 +71,7 @@ impl World {
             kernel,
             known: OnceLock::new(),
         };
-        Self { view, tracer, sources: Sources::default(), shapes: 0 }
+        Self { view, tracer, sources: Sources::default(), baked_sources: None, shapes: 0 }
     }
 
     pub(super) fn add_instance(&mut self, scene: &Scene, index: usize, has_lightmap: bool) {
@@ -142,8 +145,16 @@ impl World {
         }
     }
 
-    pub(super) fn add_light(&mut self, light: &Light) {
+    /// Begins to keep those sources apart whose direct light lightmaps hold. Glowing surfaces must be there already.
+    pub(super) fn part_baked_sources(&mut self) {
+        self.baked_sources = Some(self.sources.clone());
+    }
+
+    pub(super) fn add_light(&mut self, light: &Light, is_drawn: bool) {
         self.sources.add_light(light, self.tracer.traced_from_world);
+        if let Some(baked) = self.baked_sources.as_mut().filter(|_| !is_drawn) {
+            baked.add_light(light, self.tracer.traced_from_world);
+        }
         if let Light::Rect(_) = light {
             self.shapes += 1;
         }
@@ -151,6 +162,9 @@ impl World {
 
     pub(super) fn set_environment(&mut self, map: &EnvironmentMap) {
         self.sources.set_environment(map);
+        if let Some(baked) = &mut self.baked_sources {
+            baked.set_environment(map);
+        }
     }
 
     /// Shapes that glow.
@@ -178,6 +192,7 @@ impl World {
         });
         tracer.extent = bounds.map_or(0.0, |(low, high)| (high - low).length());
         tracer.lights = self.sources.into_lights();
+        tracer.baked_lights = self.baked_sources.map(Sources::into_lights);
         tracer.triangle_of.resize(tracer.lights.emitter_count(), NO_TRIANGLE);
         tracer.sky_radiance = sky_radiance;
         tracer

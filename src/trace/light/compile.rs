@@ -12,7 +12,7 @@ use std::f32::consts::PI;
 
 /// Sources as they come together. Their order is that in which they are added, and must not depend on how the scene is
 /// stored.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(in crate::trace) struct Sources(Parts);
 
 impl Sources {

@@ -17,7 +17,7 @@ use glam::{DQuat, DVec3, UVec2, Vec2, Vec3};
 use std::f64::consts::{PI, TAU};
 
 /// A picture of the sky that can be aimed at.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Environment {
     map: EnvironmentMap,
     world_from_map: DQuat,

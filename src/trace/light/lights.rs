@@ -30,7 +30,7 @@ pub(in crate::trace) struct Lights {
 }
 
 /// The parts of [`Lights`], in an order that must not depend on how the scene is stored.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Parts {
     pub(super) emitters: Vec<Emitter>,
     /// Numbers of those that block nothing, so that no ray meets them as triangles.

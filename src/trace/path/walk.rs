@@ -9,7 +9,7 @@ use crate::math::{Frame, Portable};
 use crate::trace::accel::Hit;
 use crate::trace::bsdf::{Bsdf, BsdfSample, Density, Lambert};
 use crate::trace::kernel::{DISTANT, LAYERED, PASSING};
-use crate::trace::light::{LightContext, Way};
+use crate::trace::light::{LightContext, Lights, Way};
 use crate::trace::material::Surface;
 use crate::trace::mis::power_heuristic;
 use crate::trace::sampler::{Dimensions, Sampler};
@@ -52,6 +52,8 @@ pub(super) struct Walk<'t, 'p, const K: u32, S> {
     sampler: &'p S,
     transport: &'p Transport,
     tally: &'p mut Tally,
+    /// Whose direct light counts where the path is.
+    lights: &'t Lights,
     radiance: Vec3,
     throughput: Vec3,
     max_bounces: Option<u32>,
@@ -81,6 +83,7 @@ impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
             sampler,
             transport,
             tally,
+            lights: &tracer.lights,
             radiance,
             throughput,
             max_bounces,
@@ -92,6 +95,11 @@ impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
             has_passed: false,
             is_spread: false,
         }
+    }
+
+    /// The same for a texel: without direct light that is drawn in real time.
+    pub(super) fn for_texel(self) -> Self {
+        Self { lights: self.tracer.baked_lights.as_ref().unwrap_or(&self.tracer.lights), ..self }
     }
 
     /// E/π at a receiver, by one path.
@@ -142,7 +150,7 @@ impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
                 Arrival::Outside => return self.escape(&ray),
                 Arrival::Ended => return,
             };
-            self.number += 1;
+            self.go_to_next();
             if self.number >= MAX_VERTICES {
                 self.tally.endless += 1;
                 self.tally.kept_by = Some(self.tracer.surface_of[self.place.triangle as usize]);
@@ -154,6 +162,13 @@ impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
                 None => return,
             }
         }
+    }
+
+    /// Notes that the path is at another vertex, where all light counts.
+    #[inline]
+    fn go_to_next(&mut self) {
+        self.number += 1;
+        self.lights = &self.tracer.lights;
     }
 
     /// Adds the light that a vertex gets straight from a source and chooses the way on.
@@ -207,7 +222,7 @@ impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
             self.tally.rays += 1;
             let hit = tracer.nearest(origin, ray.direction);
             let end = hit.map_or(f32::INFINITY, |hit| hit.t);
-            if ray.survival.is_some() && tracer.lights.has_passable() {
+            if ray.survival.is_some() && self.lights.has_passable() {
                 self.meet_sources(ray, origin, passed, end);
             }
             let Some(hit) = hit else {
@@ -282,8 +297,7 @@ impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
             return Vec3::ZERO;
         }
         let source = tracer.emitter_of[hit.triangle as usize];
-        let weight =
-            self.weight_of_met(ray, |context| tracer.lights.pdf(source, context, ray.direction, passed + hit.t));
+        let weight = self.weight_of_met(ray, |context| self.lights.pdf(source, context, ray.direction, passed + hit.t));
         self.throughput * tracer.glow::<K>(surface, hit.place()) * weight
     }
 
@@ -336,7 +350,8 @@ impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
     #[inline]
     fn meet_sources(&mut self, ray: &Ray, origin: Vec3, passed: f32, end: f32) {
         let way = Way { origin, direction: ray.direction, end, passed };
-        for met in self.tracer.lights.passed(&ray.context, way) {
+        let lights = self.lights;
+        for met in lights.passed(&ray.context, way) {
             let weight = self.weight_of_met(ray, |_| met.pdf);
             let dimming = if K & LAYERED == 0 { Vec3::ONE } else { dimming(self.absorption, met.distance) };
             self.radiance += self.throughput * met.radiance * dimming * weight;
@@ -359,10 +374,11 @@ impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
             return;
         }
         if ray.survival.is_none() {
-            self.radiance += self.throughput * self.tracer.lights.sky_picture(ray.direction);
+            self.radiance += self.throughput * self.lights.sky_picture(ray.direction);
             return;
         }
-        for met in self.tracer.lights.distant(&ray.context, ray.direction) {
+        let lights = self.lights;
+        for met in lights.distant(&ray.context, ray.direction) {
             let weight = self.weight_of_met(ray, |_| met.pdf);
             self.radiance += self.throughput * met.radiance * weight;
         }

@@ -24,7 +24,7 @@ impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
         let is_own = self.has_passed || self.knows_body;
         match arrival {
             Arrival::At(vertex) => {
-                self.number += 1;
+                self.go_to_next();
                 match self.look_of(&vertex).filter(|_| !is_own) {
                     Some(look) if K & LAYERED == 0 => {
                         let alone = std::mem::take(&mut self.radiance);

@@ -26,8 +26,8 @@ impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
     pub(super) fn illuminate(&mut self, vertex: &Vertex<'t>, context: &LightContext) -> Option<Sent> {
         let is_sampled = match self.transport.estimator {
             // A source without extent is met by no ray, so that light sampling has to find it in any case.
-            Estimator::Bsdf => self.tracer.lights.has_delta(),
-            _ => !self.tracer.lights.is_empty(),
+            Estimator::Bsdf => self.lights.has_delta(),
+            _ => !self.lights.is_empty(),
         };
         if is_sampled && (K & LAYERED == 0 || vertex.bsdf.has_smooth()) {
             return self.light_sample(vertex, context);
@@ -39,8 +39,7 @@ impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
     #[inline]
     fn light_sample(&mut self, vertex: &Vertex<'t>, context: &LightContext) -> Option<Sent> {
         let [u, v, u_choice, _] = self.sampler.draw(Dimensions::Light { vertex: self.number });
-        let lights = &self.tracer.lights;
-        let sample = lights.sample(context, Vec2::new(u, v), u_choice)?;
+        let sample = self.lights.sample(context, Vec2::new(u, v), u_choice)?;
         let estimator = self.transport.estimator;
         if estimator == Estimator::Bsdf && sample.pdf.is_some() {
             return None;
