@@ -62,7 +62,9 @@ pub mod prelude {
         ClearLightmaps, EmissiveUnit, LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver, RangeWindow,
         SceneSettings,
     };
-    pub use crate::plugin::{BakedFolder, BakedLightmaps, KilnId, KilnPlugin, KilnSystems, LightmapFiltering};
+    pub use crate::plugin::{
+        BakedFolder, BakedLightmaps, KilnId, KilnPlugin, KilnSystems, LightBaking, LightmapFiltering,
+    };
 }
 
 /// The README's code, so that it stays true.

@@ -62,7 +62,7 @@ mod baking;
 pub mod windowless;
 
 pub use display::{
-    AppliedLightmaps, BakedFolder, BakedFolderError, BakedLightmaps, KilnId, LightmapFiltering, stable_id,
+    AppliedLightmaps, BakedFolder, BakedFolderError, BakedLightmaps, KilnId, LightBaking, LightmapFiltering, stable_id,
 };
 
 #[cfg(feature = "bake")]

@@ -5,6 +5,7 @@ mod attach;
 mod attribute;
 mod filtering;
 mod folder;
+mod light_baking;
 mod mute;
 mod relay;
 mod stable_path;
@@ -13,6 +14,7 @@ mod wear;
 pub use apply::{AppliedLightmaps, BakedLightmaps};
 pub use filtering::LightmapFiltering;
 pub use folder::{BakedFolder, BakedFolderError};
+pub use light_baking::LightBaking;
 pub use stable_path::{KilnId, stable_id};
 
 #[cfg(feature = "bake")]
@@ -36,6 +38,7 @@ pub(super) fn plugin(app: &mut App) {
     app.init_asset::<BakedFolder>()
         .register_asset_loader(folder::BakedFolderLoader)
         .register_type::<KilnId>()
+        .register_type::<LightBaking>()
         .register_type::<BakedLightmaps>()
         .register_type::<LightmapFiltering>()
         .init_resource::<LightmapFiltering>()

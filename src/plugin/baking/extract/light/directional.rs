@@ -4,6 +4,7 @@
 //! component's default, is only what the atmosphere draws. So a disc, and its soft shadow, is what one asks for.
 
 use super::Reader;
+use crate::plugin::display::MutedLight;
 use crate::scene;
 use bevy::light::SunDisk;
 use bevy::prelude::*;
@@ -16,7 +17,7 @@ impl Reader<'_> {
             id: self.thing.id.clone(),
             name: self.thing.name.clone(),
             direction: self.forward(),
-            illuminance: light.color.to_linear().to_vec3() * light.illuminance,
+            illuminance: light.color.to_linear().to_vec3() * MutedLight::illuminance(self.muted(), light.illuminance),
             angular_diameter: disc.map_or(0.0, |disc| disc.angular_size),
         }))
     }

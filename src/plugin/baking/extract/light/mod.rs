@@ -6,7 +6,8 @@ mod rect;
 
 use super::{Extraction, ExtractionWarning, Kind, Thing, is_on_layers, is_visible};
 use crate::plugin::baking::{RangeWindow, SceneSettings};
-use crate::plugin::stable_id;
+use crate::plugin::display::MutedLight;
+use crate::plugin::{LightBaking, stable_id};
 use bevy::light::{DirectionalLightTexture, PointLight, PointLightTexture, RectLight, SpotLight, SpotLightTexture};
 use bevy::math::Affine3A;
 use bevy::prelude::*;
@@ -38,7 +39,8 @@ pub(super) fn find(world: &mut World, settings: &SceneSettings, warnings: &mut V
         found.extend(kinds.into_iter().filter(|(has, _)| *has).map(|(_, kind)| (entity, kind)));
     }
     let world = &*world;
-    let visible = found.into_iter().filter(|&(entity, _)| is_visible(world, entity));
+    let is_asked_for = |entity| LightBaking::of(world, entity) != LightBaking::RealTime;
+    let visible = found.into_iter().filter(|&(entity, _)| is_visible(world, entity) && is_asked_for(entity));
     let (taken, left): (Vec<_>, Vec<_>) = visible.partition(|&(entity, _)| is_on_layers(world, entity, settings));
     let name = |(entity, _)| stable_id(world, entity).as_str().to_owned();
     warnings.extend(left.into_iter().map(|light| ExtractionWarning::OtherLayers { name: name(light) }));
@@ -54,6 +56,9 @@ pub(super) fn extract(world: &World, thing: &Thing, kind: LightKind, settings: &
         LightKind::Spot => reader.spot(),
         LightKind::Directional => reader.directional(),
     };
+    if LightBaking::of(world, thing.entity) == LightBaking::MixedIndirect {
+        out.scene.indirect_only.insert(thing.id.clone());
+    }
     out.scene.lights.extend(light);
     if let Some(component) = cookie(world, thing.entity, kind) {
         out.warnings.push(ExtractionWarning::LightPicture { name: thing.name.clone(), component });
@@ -68,6 +73,11 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
+    /// What it was before a bake that is on show turned it down.
+    fn muted(&self) -> Option<&MutedLight> {
+        self.world.get::<MutedLight>(self.thing.entity)
+    }
+
     fn affine(&self) -> Affine3A {
         self.world.get::<GlobalTransform>(self.thing.entity).copied().unwrap_or_default().affine()
     }

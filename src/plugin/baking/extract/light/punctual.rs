@@ -2,6 +2,7 @@
 
 use super::{Reader, is_from_gltf};
 use crate::math::Portable;
+use crate::plugin::display::MutedLight;
 use crate::scene;
 use bevy::light::{PointLight, SpotLight};
 use bevy::prelude::*;
@@ -16,13 +17,15 @@ const STEEPEST: f32 = 1e-4;
 impl Reader<'_> {
     pub(super) fn point(&self) -> Option<scene::Light> {
         let light = self.world.get::<PointLight>(self.thing.entity)?;
-        let intensity = light.color.to_linear().to_vec3() * (light.intensity / (4.0 * PI));
+        let power = MutedLight::point_power(self.muted(), light.intensity);
+        let intensity = light.color.to_linear().to_vec3() * (power / (4.0 * PI));
         Some(scene::Light::Point(self.bulb(intensity, light.radius, light.range)))
     }
 
     pub(super) fn spot(&self) -> Option<scene::Light> {
         let light = self.world.get::<SpotLight>(self.thing.entity)?;
-        let intensity = light.color.to_linear().to_vec3() * (light.intensity / (4.0 * PI));
+        let power = MutedLight::spot_power(self.muted(), light.intensity);
+        let intensity = light.color.to_linear().to_vec3() * (power / (4.0 * PI));
         // The glTF loader puts the range into the radius as well.
         let is_loaders = light.radius == light.range && is_from_gltf(self.world, self.thing.entity);
         let radius = if is_loaders { 0.0 } else { light.radius };

@@ -11,8 +11,7 @@ use std::f32::consts::PI;
 impl Reader<'_> {
     pub(super) fn rect(&self) -> Option<scene::Light> {
         let light = self.world.get::<RectLight>(self.thing.entity)?;
-        let muted = self.world.get::<MutedLight>(self.thing.entity).and_then(|muted| muted.rect_intensity);
-        let power = if light.intensity == 0.0 { muted.unwrap_or(0.0) } else { light.intensity };
+        let power = MutedLight::rect_power(self.muted(), light.intensity);
         let affine = self.affine();
         let width = light.width * affine.matrix3.x_axis.length();
         let height = light.height * affine.matrix3.y_axis.length();
