@@ -61,7 +61,7 @@ fn main() {
                 denoise: Denoise::Off,
                 ..BakeSettings::default()
             };
-            let plan = BakePlan::for_scene(&scene, &settings).unwrap();
+            let plan = BakePlan::for_scene(&scene, &settings, &(), &CancelToken::default()).unwrap();
             let predicted = plan.predicted.iter().find(|price| price.error == error).unwrap().seconds;
             let real = tracing(&scene, &settings).as_secs_f64();
             println!("{name:12} {:4.0} %  {predicted:8.2} s  {real:8.2} s  {:.2}", 100.0 * error, predicted / real);

@@ -322,3 +322,41 @@ fn a_bake_that_is_watched_is_the_same() {
     let [coarse, fine] = [coarse, &watched].map(|lightmap| mean(&lightmap.pages));
     assert!((coarse / fine - 1.0).abs() < 0.03, "{coarse} {fine}");
 }
+
+/// Held for a while now and then, a bake is the same.
+#[test]
+fn a_bake_that_was_paused_is_the_same() {
+    /// Pauses at every tenth report until another thread lets it go on.
+    struct Restless {
+        token: CancelToken,
+        reports: Mutex<u32>,
+        pauses: std::sync::mpsc::SyncSender<()>,
+    }
+    impl ProgressSink for Restless {
+        fn report(&self, _: Progress) {
+            let mut reports = self.reports.lock().unwrap();
+            *reports += 1;
+            if reports.is_multiple_of(10) {
+                self.token.pause();
+                self.pauses.send(()).unwrap();
+            }
+        }
+    }
+    let scene = rooms();
+    let settings = settings(Goal::Samples(64));
+    let undisturbed = from_nothing(&scene, &settings);
+    let token = CancelToken::default();
+    let (pauses, paused) = std::sync::mpsc::sync_channel(64);
+    let theirs = token.clone();
+    let waker = std::thread::spawn(move || paused.iter().inspect(|()| theirs.resume()).count());
+    let restless = Restless { token: token.clone(), reports: Mutex::default(), pauses };
+    let disturbed = bake_lightmap(&scene, &settings, &restless, &token).unwrap();
+    drop(restless);
+    assert!(waker.join().unwrap() > 2, "it was never paused");
+    assert_eq!(disturbed.pages, undisturbed.pages);
+
+    // And one that is paused can be stopped.
+    token.pause();
+    token.cancel();
+    assert!(bake_lightmap(&scene, &settings, &(), &token).is_err());
+}

@@ -2,7 +2,7 @@
 
 mod common;
 
-use bevy_kiln::bake::{BakePlan, BakeSettings};
+use bevy_kiln::bake::{BakePlan, BakeSettings, CancelToken};
 use bevy_kiln::scene::{Interior, Light, Material, Scattering, Scene, Standard};
 use bevy_kiln::trace::{Effect, EffectSet, Estimator, ForcedEffects, Transport};
 use common::garden::garden;
@@ -101,7 +101,7 @@ fn a_sun_without_a_size_is_warned_of_where_a_mirror_should_show_it() {
             sun.angular_diameter = angular_diameter;
         }
         scene.lights.push(sun);
-        let plan = BakePlan::for_scene(&scene, &BakeSettings::default()).unwrap();
+        let plan = BakePlan::for_scene(&scene, &BakeSettings::default(), &(), &CancelToken::default()).unwrap();
         plan.warnings.iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     let found = warnings(0.0, Scattering::Mirror);
@@ -118,7 +118,7 @@ fn plans_read_well() {
     let plan = |scene: &Scene, forced: ForcedEffects| {
         let transport = Transport { effects: forced, ..Transport::default() };
         let settings = BakeSettings { transport, density: 4.0, ..BakeSettings::default() };
-        let plan = BakePlan::for_scene(scene, &settings).unwrap();
+        let plan = BakePlan::for_scene(scene, &settings, &(), &CancelToken::default()).unwrap();
         let lines = plan.effects.iter().map(|planned| {
             assert_eq!(planned.cost_share.is_some(), planned.on);
             assert!(planned.cost_share.is_none_or(|share| (0.0..=1.0).contains(&share)));

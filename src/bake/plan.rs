@@ -12,7 +12,7 @@ use super::survey::Surveyed;
 use super::tiles::tiles;
 use super::unwrap::LaidOut;
 use super::workers::Workers;
-use super::{BakeError, BakeSettings, BakeWarning, CancelToken, REPLICATES};
+use super::{BakeError, BakeSettings, BakeWarning, CancelToken, ProgressSink, REPLICATES};
 use crate::scene::Scene;
 use crate::trace::{Compiled, Effect, Tracer};
 use price::Pilot;
@@ -65,16 +65,20 @@ impl BakePlan {
     /// # Errors
     ///
     /// What [`bake_lightmap`](super::bake_lightmap) would refuse.
-    pub fn for_scene(scene: &Scene, settings: &BakeSettings) -> Result<Self, BakeError> {
+    pub fn for_scene(
+        scene: &Scene,
+        settings: &BakeSettings,
+        progress: &dyn ProgressSink,
+        cancel: &CancelToken,
+    ) -> Result<Self, BakeError> {
         settings.validate()?;
-        let cancel = CancelToken::default();
-        let workers = Workers::new(settings.threads, &(), &cancel)?;
+        let workers = Workers::new(settings.threads, progress, cancel)?;
         let laid_out = LaidOut::new(scene, settings, &workers)?;
         let scene: &Scene = &laid_out.scene;
         let Compiled { tracer, faults, census } = Compiled::new(scene, &settings.transport);
         let faults = laid_out.without_solved(faults);
         refuse_what_cannot_be_baked(&tracer, &faults)?;
-        let atlas = Atlas::new(&laid_out, &tracer, settings, &cancel)?;
+        let atlas = Atlas::new(&laid_out, &tracer, settings, cancel)?;
         let Sites { seen: sites, warnings: of_uv1, .. } = Sites::new(scene, &tracer, &atlas, settings, &workers)?;
         refuse_endless_texels(scene, &tracer, &settings.transport, &sites)?;
         let mut warnings: Vec<BakeWarning> = faults.into_iter().map(BakeWarning::from).collect();

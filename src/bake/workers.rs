@@ -89,6 +89,7 @@ impl<'a> Workers<'a> {
     ) -> Result<Work<T>, BakeError> {
         let tally = Mutex::new(Tally::default());
         let of_group = |group: &G| -> Option<Vec<T>> {
+            self.cancel.wait_while_paused();
             let clock = ThreadTime::now();
             let results = work(group, self.cancel)?;
             self.tell(&tally, total, &results, clock.elapsed(), &error);
@@ -117,8 +118,11 @@ impl<'a> Workers<'a> {
         items: &[I],
         work: impl Fn(&I, &CancelToken) -> Option<T> + Sync,
     ) -> Result<Vec<T>, BakeError> {
-        let results: Option<Vec<T>> =
-            self.pool.install(|| items.par_iter().map(|item| work(item, self.cancel)).collect());
+        let of_item = |item: &I| {
+            self.cancel.wait_while_paused();
+            work(item, self.cancel)
+        };
+        let results: Option<Vec<T>> = self.pool.install(|| items.par_iter().map(of_item).collect());
         results.ok_or(BakeError::Cancelled)
     }
 

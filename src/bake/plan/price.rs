@@ -70,7 +70,7 @@ fn least(seconds: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use crate::artefact::StableId;
-    use crate::bake::{BakePlan, BakeSettings};
+    use crate::bake::{BakePlan, BakeSettings, CancelToken};
     use crate::scene::{Alpha, Indices, Instance, LightmapRequest, Material, Mesh, Scene};
     use crate::trace::Effect;
     use glam::{Affine3A, Quat, Vec2, Vec3, Vec4};
@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn the_only_window_of_a_white_room_has_no_price() {
         let settings = BakeSettings { density: 1.0, ..BakeSettings::default() };
-        let plan = BakePlan::for_scene(&room(), &settings).unwrap();
+        let plan = BakePlan::for_scene(&room(), &settings, &(), &CancelToken::default()).unwrap();
         let of = |effect| plan.effects.iter().find(|planned| planned.effect == effect).unwrap();
         let window = of(Effect::Transparency);
         assert!(window.on && window.cost_share.is_none(), "{window:?}");

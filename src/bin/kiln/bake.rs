@@ -21,7 +21,7 @@ pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> 
     let extraction = scene::open(&args.scene, cancel)?;
     let mut warnings: Vec<String> = extraction.warnings.iter().map(ToString::to_string).collect();
     warn(&warnings);
-    let plan = BakePlan::for_scene(&extraction.scene, &settings)?;
+    let plan = BakePlan::for_scene(&extraction.scene, &settings, &(), cancel)?;
     talk.plan(&plan);
     warn(&plan.warnings.iter().map(ToString::to_string).collect::<Vec<_>>());
     let show = Show::new();

@@ -13,7 +13,7 @@ pub(crate) fn run(args: &PlanArgs, cancel: &CancelToken) -> Result<(), Failure> 
     let mut warnings: Vec<String> = extraction.warnings.iter().map(ToString::to_string).collect();
     // First of all, as they may be why there is no plan.
     warn(&warnings);
-    let plan = BakePlan::for_scene(&extraction.scene, &settings)?;
+    let plan = BakePlan::for_scene(&extraction.scene, &settings, &(), cancel)?;
     let planned: Vec<String> = plan.warnings.iter().map(ToString::to_string).collect();
     warn(&planned);
     warnings.extend(planned);

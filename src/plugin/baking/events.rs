@@ -3,7 +3,9 @@
 
 use super::extract::extract_scene;
 use super::settings::SceneSettings;
-use crate::bake::{BakeError, BakePlan, BakeSettings, Denoise, Goal, LaterBounces, Layout, Lightmap, Progress, Stage};
+use crate::bake::{
+    BakeError, BakePlan, BakeSettings, CancelToken, Denoise, Goal, LaterBounces, Layout, Lightmap, Progress, Stage,
+};
 use crate::trace::{Estimator, ForcedEffects, Sharing, Transport};
 use bevy::prelude::*;
 use std::num::NonZeroUsize;
@@ -163,7 +165,8 @@ impl BakeLightmaps {
     ///
     /// What would keep the bake from being done.
     pub fn plan(&self, world: &mut World) -> Result<BakePlan, BakeError> {
-        BakePlan::for_scene(&extract_scene(world, &self.scene).scene, &self.bake_settings())
+        let scene = extract_scene(world, &self.scene).scene;
+        BakePlan::for_scene(&scene, &self.bake_settings(), &(), &CancelToken::default())
     }
 
     /// The same in the baker's own words.
