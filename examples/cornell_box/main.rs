@@ -1,6 +1,6 @@
 //! The Cornell box, dark but for its lamp until it is baked: press B and look on.
 //!
-//! `cargo run --features cli,window --example cornell_box`. With `--screenshot FILE` it bakes, takes a picture of
+//! `cargo run --features full --example cornell_box`. With `--screenshot FILE` it bakes, takes a picture of
 //! its window and ends, for a run without a person. What it shows of the plugin is in `bake.rs`, `folder.rs` and
 //! `room.rs`; the rest is a window, a camera and words on the screen.
 

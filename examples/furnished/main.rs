@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! cargo kiln bake assets/scenes/furnished.glb -o out/furnished --sky 1200,1500,2000 --spp 64
-//! cargo run --features cli,window --example furnished -- --folder out/furnished --bicubic
+//! cargo run --features full --example furnished -- --folder out/furnished --bicubic
 //! ```
 //!
 //! All but the scene is shared with the example `cornell_box`.

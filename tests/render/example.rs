@@ -131,7 +131,7 @@ fn example() -> PathBuf {
     let own = std::env::current_exe().unwrap();
     let profile = own.parent().and_then(Path::parent).unwrap();
     let path = profile.join("examples").join("cornell_box").with_extension(std::env::consts::EXE_EXTENSION);
-    let hint = "build it first: cargo build --features cli,window --example cornell_box";
+    let hint = "build it first: cargo build --features full --example cornell_box";
     assert!(path.is_file(), "there is no {}; {hint}", path.display());
     path
 }
