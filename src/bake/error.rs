@@ -2,6 +2,7 @@
 
 use super::gather::Estimate;
 use super::unwrap::Uv1Fault;
+use crate::artefact::StableId;
 use crate::scene::{Fault, Subject};
 use crate::trace::{Census, Effect, EffectSet, MAX_VERTICES, Transport};
 use thiserror::Error;
@@ -179,6 +180,23 @@ pub enum BakeWarning {
         paths: u64,
         /// After how many surfaces.
         surfaces: u32,
+    },
+    /// An irradiance volume that lies inside of bodies.
+    #[error("irradiance volume \"{volume}\" has no probe in the air, so it was left out; move it or let it be larger")]
+    NoAir {
+        /// The volume.
+        volume: StableId,
+    },
+    /// More irradiance volumes than Bevy shows.
+    #[error(
+        "there are {volumes} irradiance volumes, and Bevy shows the {limit} that are in view and whose middle is nearest \
+         to the camera; merge some of them"
+    )]
+    TooManyVolumes {
+        /// How many there are.
+        volumes: usize,
+        /// How many are shown.
+        limit: usize,
     },
     /// Texel values beyond what a texture format can hold.
     #[error("{texels} texels are brighter than {format} can hold ({limit} cd/m²) and were clamped")]

@@ -24,6 +24,7 @@ pub(super) enum KeyKind {
     Pixel = 3,
     Balance = 4,
     Probe = 5,
+    VolumeProbe = 6,
 }
 
 /// The key of the paths of kind `kind` under `seed` that belong to an object (or nothing: 0) and a place on it.

@@ -1,4 +1,4 @@
-//! What is measured and where it is kept: lightmaps, light meters and pictures.
+//! What is measured and where it is kept: lightmaps, irradiance volumes, light meters and pictures.
 //!
 //! A lightmap is made in five steps, [`bake_lightmap`] in a screen:
 //!
@@ -41,6 +41,7 @@ mod texel;
 mod tiles;
 mod unwrap;
 mod validity;
+mod volume;
 mod workers;
 
 pub use baker::Baker;
@@ -61,3 +62,4 @@ pub use report::{BakeReport, Denoised, Intervals, Jump, RelativeError, SeamRepor
 pub use reuse::FirstPass;
 pub use settings::{BakeSettings, Denoise, LaterBounces, Layout};
 pub use unwrap::{LaidOutMesh, UnwrapMethod, Uv1Fault};
+pub use volume::{MOST_VOLUMES, ProbeState, Volume, VolumeBake, VolumeBox, VolumeBoxes, VolumeSettings, bake_volumes};

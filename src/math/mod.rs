@@ -4,6 +4,7 @@
 //! Points of the unit square are pairs in [0, 1)². Every map of it comes as three functions: the map, its density
 //! and its inverse, so that a test can hold each against the other two.
 
+mod ambient_cube;
 mod colour;
 mod distribution;
 mod distribution_2d;
@@ -24,6 +25,7 @@ pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
 
+pub use ambient_cube::{AmbientCube, FACES, ambient_cube_weights};
 pub use colour::luminance;
 pub use distribution::{Discrete, DiscreteSample, DistributionError};
 pub use distribution_2d::{Cell, Discrete2d};

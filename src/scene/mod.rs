@@ -46,6 +46,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Ids of those whose direct light is drawn in real time: lightmaps hold only what surfaces send on of it.
     pub indirect_only: BTreeSet<StableId>,
+    /// Ids of those that are off in real time: irradiance volumes hold their direct light too.
+    pub off_in_real_time: BTreeSet<StableId>,
     /// Radiance of a sky that is the same in every direction [cd/m²]. Black is no sky.
     pub sky_radiance: Vec3,
     /// A picture of the sky, on top of `sky_radiance`.

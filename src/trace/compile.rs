@@ -24,26 +24,48 @@ pub(crate) struct Compiled {
 }
 
 /// What a scene is compiled for.
+#[derive(Clone, Copy, Default)]
 struct Purpose<'a> {
     has_camera: bool,
+    /// Whether paths start at probes of irradiance volumes instead of at texels.
+    has_probes: bool,
     /// A tracer of the same scene whose tree can be shared.
     tree_of: Option<&'a Tracer>,
+}
+
+impl Purpose<'_> {
+    /// Whether the direct light of a source is drawn in real time where paths start. Bevy cannot have a rectangular light
+    /// light some things and not others, so that one which lightmaps hold is off.
+    fn is_drawn(self, scene: &Scene, light: &Light) -> bool {
+        let is_on_in_real_time = match light {
+            Light::Rect(_) => false,
+            Light::Point(_) | Light::Spot(_) | Light::Directional(_) => {
+                self.has_probes && !scene.off_in_real_time.contains(light.id())
+            }
+        };
+        is_on_in_real_time || scene.indirect_only.contains(light.id())
+    }
 }
 
 impl Compiled {
     /// Compiles what is sound in a scene, for the effects that it calls for and those that are forced.
     pub(crate) fn new(scene: &Scene, transport: &Transport) -> Self {
-        Self::compile(scene, transport, Purpose { has_camera: false, tree_of: None })
+        Self::compile(scene, transport, Purpose::default())
     }
 
     /// The same for rays that start at a camera.
     pub(crate) fn for_camera(scene: &Scene, transport: &Transport) -> Self {
-        Self::compile(scene, transport, Purpose { has_camera: true, tree_of: None })
+        Self::compile(scene, transport, Purpose { has_camera: true, ..Purpose::default() })
+    }
+
+    /// The same for probes of irradiance volumes.
+    pub(crate) fn for_probes(scene: &Scene, transport: &Transport) -> Self {
+        Self::compile(scene, transport, Purpose { has_probes: true, ..Purpose::default() })
     }
 
     /// The same scene for other effects, with the tree of another tracer of it.
     pub(crate) fn sharing_tree(scene: &Scene, transport: &Transport, other: &Tracer) -> Self {
-        Self::compile(scene, transport, Purpose { has_camera: false, tree_of: Some(other) })
+        Self::compile(scene, transport, Purpose { tree_of: Some(other), ..Purpose::default() })
     }
 
     fn compile(scene: &Scene, transport: &Transport, purpose: Purpose<'_>) -> Self {
@@ -71,7 +93,7 @@ impl Compiled {
         }
         world.move_to_traced_frame();
         world.add_emitters();
-        let is_drawn = |light: &Light| scene.indirect_only.contains(light.id());
+        let is_drawn = |light: &Light| purpose.is_drawn(scene, light);
         if lights.iter().any(|light| is_drawn(light)) {
             world.part_baked_sources();
         }

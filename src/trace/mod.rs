@@ -20,6 +20,7 @@ mod path;
 mod sampler;
 mod shade;
 mod surface;
+mod surroundings;
 mod tangents;
 #[cfg(test)]
 mod testing;
@@ -34,7 +35,7 @@ pub(crate) use census::{Census, effect_of};
 pub(crate) use compile::Compiled;
 pub use effects::{Effect, EffectSet, ForcedEffects};
 pub(crate) use known::{KnownCell, KnownGrid, KnownLight, Unfolded};
-pub(crate) use path::{MAX_VERTICES, MOST_RECEIVERS, PathStart, Tally};
+pub(crate) use path::{Arrived, MAX_VERTICES, MOST_RECEIVERS, PathStart, Tally};
 pub(crate) use sampler::{Dimensions, Independent, Sampler, Sobol};
 pub(crate) use tracer::Receiver;
 pub use tracer::{RayHit, Tracer};

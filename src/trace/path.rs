@@ -44,6 +44,15 @@ pub(crate) struct Tally {
     pub(crate) was_spread: bool,
 }
 
+/// Light that comes to a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arrived {
+    /// Unit direction that it comes from.
+    pub(crate) direction: Vec3,
+    /// How much of it there is [cd/m²].
+    pub(crate) radiance: Vec3,
+}
+
 impl Tracer {
     /// One sample of E/π at a start [cd/m²]. Adds what it did to `tally`.
     pub(crate) fn diffuse_radiance(
@@ -66,10 +75,24 @@ impl Tracer {
         transport: &Transport,
         tally: &mut Tally,
     ) -> Vec3 {
-        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).for_texel().receive(start))
+        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).baked().receive(start))
     }
 
-    /// The same, as far as it can serve other receivers apart from what cannot.
+    /// One sample of the radiance that comes to a point in mid-air, averaged over all directions, as irradiance volumes
+    /// are to hold it. The point is one of the world [m]; the mean over many samples of the sum of f(direction) ·
+    /// radiance is ∫ L(ω) f(ω) dω / 4π for any f.
+    pub(crate) fn light_around(
+        &self,
+        position: Vec3,
+        sampler: &impl Sampler,
+        transport: &Transport,
+        tally: &mut Tally,
+    ) -> [Arrived; 2] {
+        let position = self.traced_from_world.point(position);
+        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).baked().look_around(position))
+    }
+
+    /// The same as [`Self::baked_radiance`], as far as it can serve other receivers apart from what cannot.
     pub(crate) fn find(
         &self,
         start: &PathStart,
@@ -77,7 +100,7 @@ impl Tracer {
         transport: &Transport,
         tally: &mut Tally,
     ) -> Found<'_> {
-        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).for_texel().find(start))
+        with_kernel!(self.kernel, K => Walk::<K, _>::new(self, sampler, transport, tally).baked().find(start))
     }
 
     /// Radiance that arrives against `direction` at `origin`, a point of the world, along a camera's ray [cd/m²].

@@ -42,7 +42,8 @@ pub struct Tracer {
     /// Per emitter, its (first) triangle or [`NO_TRIANGLE`].
     pub(super) triangle_of: Vec<u32>,
     pub(super) lights: Lights,
-    /// Those whose direct light lightmaps hold, with the same numbers for surfaces; `None` where it is that of all.
+    /// Those whose direct light counts where paths start, with the same numbers for surfaces; `None` where it is that of
+    /// all.
     pub(super) baked_lights: Option<Lights>,
     pub(super) sky_radiance: Vec3,
     /// Length of the diagonal of the scene's bounds [m].

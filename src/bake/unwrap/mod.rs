@@ -178,6 +178,7 @@ impl<'a> LaidOut<'a> {
             instances,
             materials: scene.materials.clone(),
             indirect_only: scene.indirect_only.clone(),
+            off_in_real_time: scene.off_in_real_time.clone(),
             textures: scene.textures.clone(),
             lights: scene.lights.clone(),
             environment: scene.environment.clone(),

@@ -1,5 +1,6 @@
 //! One path: from a vertex along a ray to the next vertex, and what light it finds on the way.
 
+mod around;
 mod find;
 mod light;
 
@@ -97,8 +98,8 @@ impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
         }
     }
 
-    /// The same for a texel: without direct light that is drawn in real time.
-    pub(super) fn for_texel(self) -> Self {
+    /// The same without direct light, where it starts, that is drawn in real time.
+    pub(super) fn baked(self) -> Self {
         Self { lights: self.tracer.baked_lights.as_ref().unwrap_or(&self.tracer.lights), ..self }
     }
 
