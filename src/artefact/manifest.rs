@@ -8,7 +8,7 @@ use thiserror::Error;
 pub const MANIFEST_FILE: &str = "kiln.ron";
 
 /// The version that this library writes, and the newest that it reads.
-pub const MANIFEST_VERSION: u32 = 2;
+pub const MANIFEST_VERSION: u32 = 3;
 
 /// Everything that a game must know to put a bake on its entities.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,6 +31,26 @@ pub struct Manifest {
     pub meshes: Option<String>,
     /// Lights whose direct light is in the texels and must not be added again.
     pub baked_lights: Vec<BakedLight>,
+    /// Irradiance volumes. Since version 3.
+    #[serde(default)]
+    pub volumes: Vec<Volume>,
+}
+
+/// One irradiance volume.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Volume {
+    /// Whose it is: the entity that asked for it, or a name that the bake found for it.
+    pub id: StableId,
+    /// File name inside the folder, of a three-dimensional texture of (x, 2y, 3z) texels for (x, y, z) probes.
+    pub file: String,
+    /// The middle of its box [m, world].
+    pub centre: [f32; 3],
+    /// From the box's own axes to the world's: a unit quaternion x, y, z, w.
+    pub rotation: [f32; 4],
+    /// The sides of its box [m].
+    pub size: [f32; 3],
+    /// Bevy's `LightProbe::falloff`, the same along each axis.
+    pub falloff: f32,
 }
 
 /// One lightmap texture.
@@ -145,6 +165,14 @@ mod tests {
             ],
             meshes: Some("meshes.kiln".into()),
             baked_lights: vec![BakedLight { id: StableId::new("lamp") }],
+            volumes: vec![Volume {
+                id: StableId::new("volume/0"),
+                file: "volume_0.ktx2".into(),
+                centre: [1.0, 2.0, 3.0],
+                rotation: [0.0, 0.0, 0.0, 1.0],
+                size: [4.0, 3.0, 5.0],
+                falloff: 0.0,
+            }],
         }
     }
 
@@ -176,7 +204,7 @@ mod tests {
             placements: [(id: "a/c", page: 0, uv_min: (0.0, 0.0), uv_max: (0.25, 1.0))],
             baked_lights: [(id: "lamp")],
         )"#;
-        let mut expected = Manifest { version: 1, meshes: None, ..manifest() };
+        let mut expected = Manifest { version: 1, meshes: None, volumes: Vec::new(), ..manifest() };
         expected.placements.remove(0);
         assert_eq!(Manifest::from_ron(text), Ok(expected));
     }

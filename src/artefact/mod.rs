@@ -6,7 +6,7 @@ mod mesh_layout;
 mod mixing;
 mod stable_id;
 
-pub use manifest::{BakedLight, MANIFEST_FILE, MANIFEST_VERSION, Manifest, ManifestError, Page, Placement};
+pub use manifest::{BakedLight, MANIFEST_FILE, MANIFEST_VERSION, Manifest, ManifestError, Page, Placement, Volume};
 pub use mesh_hash::MeshHash;
 pub use mesh_layout::{MESHES_FILE, MESHES_VERSION, MeshLayout, MeshLayoutError};
 pub use stable_id::StableId;

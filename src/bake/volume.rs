@@ -126,7 +126,7 @@ pub enum ProbeState {
     Measured,
     /// Measured beside it, out of the body that it lay in.
     Moved,
-    /// Inside a body, or in a pocket of a few cells: made of its neighbours.
+    /// Inside a body, in a pocket of a few cells or in the dark outside of everything: made of its neighbours.
     Filled,
 }
 
@@ -268,14 +268,15 @@ impl Site {
     }
 
     /// The volume for what these probes have measured, in their order.
-    fn volume(self, moments: Vec<Moments>) -> Volume {
+    fn volume(mut self, moments: Vec<Moments>) -> Volume {
         let mut moments = moments.into_iter();
         let of_probe = |&is_in_air: &bool| if is_in_air { moments.next() } else { None };
         let measured: Vec<Option<Moments>> = self.rooms.is_in_air.iter().map(of_probe).collect();
+        self.leave_the_void(&measured);
         let shown = fill(&self.grid, &self.rooms, &measured);
         let state = |(stand, is_in_air): (&Stand, &bool)| match (is_in_air, stand) {
-            (true, Stand::Centre(_)) => ProbeState::Measured,
-            (true, Stand::Moved(_)) => ProbeState::Moved,
+            (true, Stand::Air { is_moved: false, .. }) => ProbeState::Measured,
+            (true, Stand::Air { is_moved: true, .. }) => ProbeState::Moved,
             _ => ProbeState::Filled,
         };
         let Grid { centre, rotation, size, resolution } = self.grid;
@@ -288,6 +289,23 @@ impl Site {
             falloff: self.falloff,
             cubes: shown.iter().map(|moments| AmbientCube::fit(&moments.0).faces.map(|face| face.as_vec3())).collect(),
             probes: self.stands.iter().zip(&self.rooms.is_in_air).map(state).collect(),
+        }
+    }
+}
+
+impl Site {
+    /// Takes probes out of the air that no light reaches and around which much is nothing at all. That is the void outside
+    /// of a level, where nobody goes; its dark would count as a dark room's beside the walls around the level.
+    fn leave_the_void(&mut self, measured: &[Option<Moments>]) {
+        let is_void = |index: usize| {
+            let is_black = measured[index].as_ref().is_some_and(|moments| moments.luminance() == 0.0);
+            is_black && matches!(self.stands[index], Stand::Air { is_open: true, .. })
+        };
+        let void: Vec<usize> = (0..self.stands.len()).filter(|&index| is_void(index)).collect();
+        if void.len() < measured.iter().flatten().count() {
+            for index in void {
+                self.rooms.leave_out(index);
+            }
         }
     }
 }

@@ -7,6 +7,7 @@
 use super::bc6h::SIDE;
 use super::format::TexelFormat;
 use super::texels::{Encoded, texel_bytes};
+use super::volume::VolumeTexture;
 use crate::bake::Page;
 use ktx2::dfd::{Basic, Block};
 use ktx2::{Format, Header, Index, LevelIndex, SupercompressionScheme};
@@ -36,7 +37,7 @@ pub(super) fn file_of(page: &Page, format: TexelFormat, mut texels: Vec<u8>) -> 
     texels.extend_from_within(..);
     texels.truncate(width as usize * height as usize * format.bytes_per_texel());
     texels.resize(width as usize * height as usize * format.bytes_per_texel(), 0);
-    container(width, height, format, &texels)
+    container([width, height, 0], format, &texels)
 }
 
 /// Size of the texture that stores a page [texels].
@@ -49,8 +50,13 @@ pub(super) fn stored_size(page: &Page, format: TexelFormat) -> (u32, u32) {
     (width.max(least[0]), height.max(least[1]))
 }
 
-/// The file around a level.
-fn container(width: u32, height: u32, format: TexelFormat, texels: &[u8]) -> Vec<u8> {
+/// A three-dimensional texture as the bytes of a KTX2 file.
+pub(super) fn file_of_volume(texture: &VolumeTexture, format: TexelFormat, texels: &[u8]) -> Vec<u8> {
+    container(texture.size.to_array(), format, texels)
+}
+
+/// The file around a level; without depth, for 0, it is two-dimensional.
+fn container([width, height, depth]: [u32; 3], format: TexelFormat, texels: &[u8]) -> Vec<u8> {
     let vulkan_format = match format {
         TexelFormat::Rgb9e5 => Format::E5B9G9R9_UFLOAT_PACK32,
         TexelFormat::Rgba16f => Format::R16G16B16A16_SFLOAT,
@@ -58,7 +64,8 @@ fn container(width: u32, height: u32, format: TexelFormat, texels: &[u8]) -> Vec
     };
     let (basic, type_size) = Basic::from_format(vulkan_format).expect("all formats are in the crate's table");
     let descriptor = sized(&Block::Basic(basic).to_vec(), SizeField::Counted);
-    let metadata = key_values(&[("KTXorientation", "rd"), ("KTXwriter", WRITER)]);
+    let orientation = if depth == 0 { "rd" } else { "rdi" };
+    let metadata = key_values(&[("KTXorientation", orientation), ("KTXwriter", WRITER)]);
     let descriptor_offset = Header::LENGTH + LevelIndex::LENGTH;
     let metadata_offset = descriptor_offset + descriptor.len();
     let metadata_end = metadata_offset + metadata.len();
@@ -75,7 +82,7 @@ fn container(width: u32, height: u32, format: TexelFormat, texels: &[u8]) -> Vec
         type_size,
         pixel_width: width,
         pixel_height: height,
-        pixel_depth: 0,
+        pixel_depth: depth,
         layer_count: 0,
         face_count: 1,
         level_count: 1,
@@ -153,7 +160,7 @@ mod tests {
     use super::super::rgb9e5;
     use super::super::test_pages::{page, strange_page};
     use super::*;
-    use glam::Vec3;
+    use glam::{UVec3, Vec3};
     use ktx2::Reader;
     use ktx2::{ColorModel, ColorPrimaries, TransferFunction};
 
@@ -201,6 +208,19 @@ mod tests {
     }
 
     #[test]
+    fn a_volume_is_three_dimensional() {
+        let size = UVec3::new(3, 4, 6);
+        let texels = (0..72).map(|number| Vec3::new(number as f32, 1.0, 0.5)).collect();
+        let texture = VolumeTexture { size, texels };
+        for format in [TexelFormat::Rgb9e5, TexelFormat::Rgba16f] {
+            let bytes = texture.bytes(format).bytes;
+            let (header, texels) = load(&file_of_volume(&texture, format, &bytes));
+            assert_eq!((header.pixel_width, header.pixel_height, header.pixel_depth), (3, 4, 6));
+            assert_eq!((texels.len(), &texels), (72 * format.bytes_per_texel(), &bytes));
+        }
+    }
+
+    #[test]
     fn descriptor_and_metadata_say_linear_rec_709_and_row_0_first() {
         let file = ktx2_bytes(&page(8, 8), TexelFormat::Rgb9e5).bytes;
         let reader = Reader::new(&file[..]).unwrap();
@@ -236,7 +256,7 @@ mod tests {
         let (header, texels) = load(&ktx2_bytes(&empty, TexelFormat::Bc6h).bytes);
         assert_eq!((header.pixel_width, header.pixel_height, texels), (4, 4, vec![0; 16]));
         let noise = noise(64 * 64);
-        let file = container(64, 64, TexelFormat::Bc6h, &noise);
+        let file = container([64, 64, 0], TexelFormat::Bc6h, &noise);
         let level = Reader::new(&file[..]).unwrap().levels().next().unwrap().data.as_ptr() as usize;
         assert_eq!((level - file.as_ptr() as usize) % 16, 0);
     }
@@ -255,7 +275,7 @@ mod tests {
     #[test]
     fn noise_is_stored_as_it_is_and_aligned() {
         let texels = noise(64 * 64 * 8);
-        let file = container(64, 64, TexelFormat::Rgba16f, &texels);
+        let file = container([64, 64, 0], TexelFormat::Rgba16f, &texels);
         let (header, stored) = load(&file);
         assert_eq!(header.supercompression_scheme, None);
         assert_eq!(stored, texels);

@@ -3,11 +3,12 @@
 
 use super::compression::{CompressionError, Losses};
 use super::safe_write::{Staged, make_folder};
+use super::volume::{VolumeTexture, volume_format};
 use super::{OutputError, OutputFormat, TexelFormat, cost, exr, ktx2, overview, png, texel_bytes};
 use crate::artefact::{
     self, BakedLight, MANIFEST_FILE, MANIFEST_VERSION, MESHES_FILE, Manifest, MeshLayout, MeshLayoutError,
 };
-use crate::bake::{BakeWarning, Lightmap, Page, Placement};
+use crate::bake::{BakeWarning, Lightmap, Page, Placement, Volume};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -41,6 +42,17 @@ pub fn write_lightmap(
     dir: &Path,
     format: OutputFormat,
 ) -> Result<WrittenLightmap, OutputError> {
+    write_bake(lightmap, &[], scene_name, dir, format)
+}
+
+/// The same with irradiance volumes, each in a `volume_<number>.ktx2`.
+pub fn write_bake(
+    lightmap: &Lightmap,
+    volumes: &[Volume],
+    scene_name: &str,
+    dir: &Path,
+    format: OutputFormat,
+) -> Result<WrittenLightmap, OutputError> {
     check(lightmap, dir)?;
     let meshes = meshes(lightmap, dir)?;
     make_folder(dir)?;
@@ -65,14 +77,25 @@ pub fn write_lightmap(
             staged.push(Staged::write(&dir.join(page_file(index, "exr")), |file| exr::write_page(page, file))?);
         }
     }
+    for (index, volume) in volumes.iter().enumerate() {
+        let (texture, format) = (VolumeTexture::new(volume), volume_format(texel_format));
+        let encoded = texture.bytes(format);
+        clamped += encoded.clamped;
+        let file = ktx2::file_of_volume(&texture, format, &encoded.bytes);
+        staged.push(Staged::write(&dir.join(volume_file(index)), |out| out.write_all(&file))?);
+    }
     if let Some(meshes) = meshes {
         staged.push(Staged::write(&dir.join(MESHES_FILE), |file| file.write_all(&meshes))?);
     }
-    let manifest = manifest(lightmap, scene_name, texel_format).to_ron();
+    let manifest = manifest(lightmap, volumes, scene_name, texel_format).to_ron();
     staged.push(Staged::write(&dir.join(MANIFEST_FILE), |file| file.write_all(manifest.as_bytes()))?);
     let files = staged.into_iter().map(Staged::place).collect::<Result<_, _>>()?;
     let compression = losses.map(|losses| losses.error());
     Ok(WrittenLightmap { files, warnings: warnings(texel_format, clamped, clamped_in_exr), clamped, compression })
+}
+
+fn volume_file(index: usize) -> String {
+    format!("volume_{index}.ktx2")
 }
 
 fn overview_file(index: usize) -> String {
@@ -103,7 +126,7 @@ fn warnings(format: TexelFormat, clamped: u64, clamped_in_exr: u64) -> Vec<BakeW
         .collect()
 }
 
-fn manifest(lightmap: &Lightmap, scene_name: &str, format: TexelFormat) -> Manifest {
+fn manifest(lightmap: &Lightmap, volumes: &[Volume], scene_name: &str, format: TexelFormat) -> Manifest {
     let page = |(index, page): (usize, &Page)| {
         let (width, height) = ktx2::stored_size(page, format);
         artefact::Page { file: page_file(index, "ktx2"), width, height }
@@ -128,6 +151,19 @@ fn manifest(lightmap: &Lightmap, scene_name: &str, format: TexelFormat) -> Manif
         placements: lightmap.placements.iter().map(placement).collect(),
         meshes: (!lightmap.meshes.is_empty()).then(|| MESHES_FILE.to_owned()),
         baked_lights: lightmap.baked_lights.iter().map(|id| BakedLight { id: id.clone() }).collect(),
+        volumes: volumes.iter().enumerate().map(|(index, volume)| entry(index, volume)).collect(),
+    }
+}
+
+/// What the manifest says of a volume.
+fn entry(index: usize, volume: &Volume) -> artefact::Volume {
+    artefact::Volume {
+        id: volume.id.clone(),
+        file: volume_file(index),
+        centre: volume.centre.to_array(),
+        rotation: volume.rotation.to_array(),
+        size: volume.size.to_array(),
+        falloff: volume.falloff,
     }
 }
 

@@ -24,15 +24,17 @@ mod study;
 mod test_pages;
 mod texels;
 mod tone;
+mod volume;
 
 pub use compression::CompressionError;
 pub use error::OutputError;
 pub use format::{OutputFormat, TexelFormat, UnknownFormat};
 pub use ktx2::ktx2_bytes;
-pub use lightmap::{WrittenLightmap, write_lightmap};
+pub use lightmap::{WrittenLightmap, write_bake, write_lightmap};
 pub use picture::write_picture;
 pub use reference::{ReferenceError, ReferenceFault, compare_with_reference};
 #[cfg(feature = "study")]
 pub use study::{study_answer, write_study};
 pub use texels::{Encoded, texel_bytes};
 pub use tone::{Look, ToneCurve};
+pub use volume::{VolumeTexture, volume_format};

@@ -37,6 +37,7 @@ pub use effects::{Effect, EffectSet, ForcedEffects};
 pub(crate) use known::{KnownCell, KnownGrid, KnownLight, Unfolded};
 pub(crate) use path::{Arrived, MAX_VERTICES, MOST_RECEIVERS, PathStart, Tally};
 pub(crate) use sampler::{Dimensions, Independent, Sampler, Sobol};
+pub(crate) use surroundings::Surroundings;
 pub(crate) use tracer::Receiver;
 pub use tracer::{RayHit, Tracer};
 pub use transport::{Estimator, Sharing, Transport};

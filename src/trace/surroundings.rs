@@ -3,18 +3,23 @@
 //!
 //! Surfaces that let light pass straight neither part nor enclose.
 
+use super::accel::Hit;
 use super::sampler::{Dimensions, Sampler, Sobol};
 use super::tracer::Tracer;
 use crate::math::square_to_uniform_sphere;
 use glam::{Vec2, Vec3};
-use std::cmp::Ordering;
 
 /// Directions in which a point looks around.
 const DIRECTIONS: u64 = 96;
 
-/// What a point sees of the backs of surfaces.
+/// Surfaces that a ray meets within this share of the way are in the same place.
+const SAME: f32 = 1e-4;
+
+/// What a point sees.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Surroundings {
+    /// Share of all directions in which nothing blocks.
+    pub(crate) open: f32,
     /// Share of all directions in which the first thing that blocks is the back of a surface that has one.
     pub(crate) backs: f32,
     /// Ways to them from the point [m], shortest first.
@@ -25,9 +30,22 @@ impl Tracer {
     /// Looks around at a point of the world [m].
     pub(crate) fn surroundings(&self, point: Vec3) -> Surroundings {
         let origin = self.traced_from_world.point(point);
-        let mut ways: Vec<Vec3> = (0..DIRECTIONS).filter_map(|number| self.way_to_back(origin, number)).collect();
-        ways.sort_by(|a, b| a.length_squared().partial_cmp(&b.length_squared()).unwrap_or(Ordering::Equal));
-        Surroundings { backs: ways.len() as f32 / DIRECTIONS as f32, ways_to_backs: ways }
+        let mut around = Surroundings::default();
+        for number in 0..DIRECTIONS {
+            let [u, v, ..] = Sobol::new(0, number).draw(Dimensions::Start);
+            let direction = square_to_uniform_sphere(Vec2::new(u, v));
+            match self.first_block(origin, direction) {
+                Some((triangle, distance)) if self.is_back_alone(triangle, origin, direction, distance) => {
+                    around.ways_to_backs.push(direction * distance);
+                }
+                Some(_) => {}
+                None => around.open += 1.0 / DIRECTIONS as f32,
+            }
+        }
+        around.backs = around.ways_to_backs.len() as f32 / DIRECTIONS as f32;
+        let by_length = |a: &Vec3, b: &Vec3| a.length_squared().total_cmp(&b.length_squared());
+        around.ways_to_backs.sort_by(by_length);
+        around
     }
 
     /// Whether no surface that blocks light lies between two points of the world [m].
@@ -46,12 +64,14 @@ impl Tracer {
         (passed < distance).then_some(passed / distance)
     }
 
-    fn way_to_back(&self, origin: Vec3, number: u64) -> Option<Vec3> {
-        let [u, v, ..] = Sobol::new(0, number).draw(Dimensions::Start);
-        let direction = square_to_uniform_sphere(Vec2::new(u, v));
-        let (triangle, distance) = self.first_block(origin, direction)?;
-        let has_back = !self.surface(triangle).double_sided;
-        (has_back && self.normal(triangle).dot(direction) > 0.0).then_some(direction * distance)
+    /// Whether a ray that meets a triangle meets a back, and no front at the same place: where two rooms share a wall of no
+    /// thickness, both are met at once, and either may be named first.
+    fn is_back_alone(&self, triangle: u32, origin: Vec3, direction: Vec3, distance: f32) -> bool {
+        let is_back =
+            |triangle: u32| !self.surface(triangle).double_sided && self.normal(triangle).dot(direction) > 0.0;
+        let [before, behind] = [1.0 - SAME, 1.0 + SAME].map(|share| origin + direction * (distance * share));
+        let is_front = |hit: Hit| !self.surface(hit.triangle).passes && !is_back(hit.triangle);
+        is_back(triangle) && !self.accel.meets(before, behind, is_front)
     }
 
     /// The first triangle along a ray that blocks light, and how far away it is [m].

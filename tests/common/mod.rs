@@ -9,3 +9,4 @@ pub mod meter;
 pub mod scenes;
 pub mod statistics;
 pub mod table;
+pub mod volume;

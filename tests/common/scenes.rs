@@ -59,7 +59,21 @@ impl SceneBuilder {
     }
 
     /// Adds the inside of a box between two corners, each side with a material of its own: −x, +x, −y, +y, −z, +z.
-    pub fn room(mut self, low: Vec3, high: Vec3, materials: [Material; 6]) -> Self {
+    pub fn room(self, low: Vec3, high: Vec3, materials: [Material; 6]) -> Self {
+        self.sides("", low, high, materials, true)
+    }
+
+    /// Adds another one, of one material, whose sides have names that begin with this one.
+    pub fn chamber(self, name: &str, low: Vec3, high: Vec3, material: Material) -> Self {
+        self.sides(name, low, high, [0; 6].map(|_| material.clone()), true)
+    }
+
+    /// Adds a solid block.
+    pub fn block(self, name: &str, low: Vec3, high: Vec3, material: Material) -> Self {
+        self.sides(name, low, high, [0; 6].map(|_| material.clone()), false)
+    }
+
+    fn sides(mut self, prefix: &str, low: Vec3, high: Vec3, materials: [Material; 6], faces_inwards: bool) -> Self {
         let size = high - low;
         let [x, y, z] = [Vec3::X * size, Vec3::Y * size, Vec3::Z * size];
         let sides = [
@@ -70,8 +84,9 @@ impl SceneBuilder {
             ("-z", low, [x, y]),
             ("+z", low + z, [y, x]),
         ];
-        for ((name, corner, edges), material) in sides.into_iter().zip(materials) {
-            self = self.quad(name, corner, edges, material);
+        for ((name, corner, [first, second]), material) in sides.into_iter().zip(materials) {
+            let edges = if faces_inwards { [first, second] } else { [second, first] };
+            self = self.quad(&format!("{prefix}{name}"), corner, edges, material);
         }
         self
     }

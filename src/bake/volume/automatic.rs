@@ -22,8 +22,10 @@ const FINEST: f32 = 0.25;
 /// How high above the lowest point the box reaches at least [m]: over open ground there is something that moves.
 const HEADROOM: f32 = 3.0;
 
-/// The fewest pairs of parted neighbours that make a wall.
+/// The fewest pairs of parted neighbours that make a wall, and the least share of all pairs across its plane. What is
+/// less is slanted, or the wall of a small thing.
 const LEAST_PAIRS: usize = 4;
+const LEAST_SHARE: f32 = 0.2;
 
 /// The most cells in a row without air that may be a wall.
 const THICKEST: usize = 2;
@@ -99,7 +101,10 @@ impl Part {
             let walls =
                 workers.gather_quietly(&pairs, |&pair, _| Some(wall(&grid, &stands, &rooms, axis, pair, tracer)))?;
             let walls: Vec<f32> = walls.into_iter().flatten().collect();
-            let found = plane(&walls, grid.spacing()[axis]).map(|(at, pairs)| Cut { axis, at, pairs });
+            let layers = (grid.resolution[axis] as usize).saturating_sub(1).max(1);
+            let least = (LEAST_SHARE * (pairs.len() / layers) as f32) as usize;
+            let found = plane(&walls, grid.spacing()[axis]).filter(|&(_, pairs)| pairs >= least);
+            let found = found.map(|(at, pairs)| Cut { axis, at, pairs });
             cut = found.filter(|found| cut.is_none_or(|cut| found.pairs > cut.pairs)).or(cut);
         }
         Ok(Some(Self { grid, cut }))

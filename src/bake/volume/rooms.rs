@@ -2,8 +2,8 @@
 //!
 //! Bevy's lookup blends the eight probes around a place whatever stands between, so that a wall thinner than a cell would
 //! let light through. A *wall* is what keeps two neighbours from seeing each other where the way around it is long; what
-//! can be passed by going a few cells aside, as the edge of a table, is none. *Pockets* are rooms of a few probes, as the
-//! inside of a cupboard: nothing moves there, and what is dark in them is not to darken the room around.
+//! can be passed by going a few cells aside, as the edge of a table, is none. *Pockets* are rooms of a few probes or of less
+//! than a cubic metre, as the inside of a cupboard: nothing moves there, and what is dark in them is not to darken the room around.
 
 use super::grid::{Grid, steps};
 use super::stand::Stand;
@@ -13,8 +13,9 @@ use std::collections::{HashMap, VecDeque};
 /// The longest way around what is no wall [cells].
 const DETOUR: u32 = 12;
 
-/// The most probes of a pocket.
+/// The most probes of a pocket, and the most air in it [m³].
 const POCKET: usize = 7;
+const POCKET_VOLUME: f32 = 1.0;
 
 /// Which probes of a volume see each other.
 pub(super) struct Rooms {
@@ -75,15 +76,22 @@ impl Rooms {
             }
             sizes.push(size);
         }
-        if sizes.iter().all(|&size| size <= POCKET) {
+        let cell = self.grid.spacing().element_product();
+        let is_pocket = |size: usize| size <= POCKET || size as f32 * cell < POCKET_VOLUME;
+        if sizes.iter().all(|&size| is_pocket(size)) {
             return;
         }
         for index in 0..self.room.len() {
-            if self.is_in_air[index] && sizes[self.room[index] as usize] <= POCKET {
-                self.is_in_air[index] = false;
-                self.links[index] = 0;
+            if self.is_in_air[index] && is_pocket(sizes[self.room[index] as usize]) {
+                self.leave_out(index);
             }
         }
+    }
+
+    /// Takes a probe out of the air.
+    pub(super) fn leave_out(&mut self, index: usize) {
+        self.is_in_air[index] = false;
+        self.links[index] = 0;
     }
 
     /// Whether a probe sees the neighbour of this bit.

@@ -3,12 +3,12 @@
 //! no place, and its value is made of its neighbours'.
 
 use super::grid::Grid;
-use crate::trace::Tracer;
+use crate::trace::{Surroundings, Tracer};
 use glam::Vec3;
 
-/// The largest share of directions that end at a back from where it is air. A corner of three walls that have a front
-/// only is seen from behind in an eighth of all, an edge in a quarter; inside a body it is nearly all.
-const MOST_BACKS: f32 = 0.25;
+/// The largest share of directions that end at a back from where it is air. Inside a body it is nearly all; close behind
+/// a wall that has a front only it is a half, and below a ground that has no underside.
+const MOST_BACKS: f32 = 0.4;
 
 /// How far beyond a surface a probe is set, in the shortest side of its cell.
 const CLEARANCE: f32 = 0.05;
@@ -16,13 +16,21 @@ const CLEARANCE: f32 = 0.05;
 /// Ways out that are tried, the shortest first.
 const TRIES: usize = 8;
 
+/// The least share of directions without anything, in a place that is open to the outside.
+const OPEN: f32 = 0.25;
+
 /// Where a probe stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Stand {
-    /// In the middle of its cell [m, world].
-    Centre(Vec3),
-    /// Moved out of a body [m, world].
-    Moved(Vec3),
+    /// In the air.
+    Air {
+        /// Where [m, world].
+        point: Vec3,
+        /// Whether it was moved there out of a body.
+        is_moved: bool,
+        /// Whether much of what is around is nothing at all.
+        is_open: bool,
+    },
     /// Nowhere.
     Inside,
 }
@@ -32,20 +40,25 @@ impl Stand {
     pub(super) fn new(tracer: &Tracer, grid: &Grid, index: usize) -> Self {
         let centre = grid.point(index);
         let around = tracer.surroundings(centre);
-        if around.backs <= MOST_BACKS {
-            return Self::Centre(centre);
+        if let Some(stand) = Self::at(centre, &around, false) {
+            return stand;
         }
         let shortest = grid.spacing().min_element();
         let ways = around.ways_to_backs.iter().map(|way| *way + way.normalize_or_zero() * CLEARANCE * shortest);
         let near = ways.take_while(|way| way.length() <= 0.5 * shortest).take(TRIES);
-        let out = near.map(|way| centre + way).find(|&point| tracer.surroundings(point).backs <= MOST_BACKS);
-        out.map_or(Self::Inside, Self::Moved)
+        let mut out = near.map(|way| centre + way);
+        out.find_map(|point| Self::at(point, &tracer.surroundings(point), true)).unwrap_or(Self::Inside)
+    }
+
+    /// At a point [m, world], if it lies in the air.
+    fn at(point: Vec3, around: &Surroundings, is_moved: bool) -> Option<Self> {
+        (around.backs <= MOST_BACKS).then_some(Self::Air { point, is_moved, is_open: around.open >= OPEN })
     }
 
     /// Where that is [m, world].
     pub(super) fn point(self) -> Option<Vec3> {
         match self {
-            Self::Centre(point) | Self::Moved(point) => Some(point),
+            Self::Air { point, .. } => Some(point),
             Self::Inside => None,
         }
     }

@@ -1,0 +1,196 @@
+//! The light on a grey sphere at random places of a room, by the volume as Bevy shows it and by the light meter.
+
+use crate::common::glb;
+use crate::common::scenes::SceneBuilder;
+use crate::common::volume::{Bound, look_up};
+use crate::{along_axes, bake, denoise_scenes};
+use bevy_kiln::artefact::StableId;
+use bevy_kiln::bake::{
+    CancelToken, Goal, MeterPoint, MeterSettings, VolumeBox, VolumeBoxes, VolumeSettings, measure_irradiance,
+};
+use bevy_kiln::math::{AmbientCube, FACES, luminance, square_to_uniform_sphere};
+use bevy_kiln::scene::Scene;
+use bevy_kiln::trace::{Tracer, Transport};
+use glam::{DVec3, Vec2, Vec3};
+use std::f64::consts::PI;
+
+/// Normals over a sphere, and places.
+const NORMALS: u32 = 32;
+const PLACES: usize = 200;
+
+/// A place is at least this far from any surface [m]: a sphere of 0.3 m touches nothing.
+const CLEARANCE: f32 = 0.15;
+
+fn normals() -> impl Iterator<Item = Vec3> {
+    (0..NORMALS).map(|number| {
+        let along = (number as f32 + 0.5) / NORMALS as f32;
+        square_to_uniform_sphere(Vec2::new((number as f32 * 0.618_034).fract(), along))
+    })
+}
+
+/// Numbers of a fixed seed in [0, 1).
+fn random(seed: u64) -> impl Iterator<Item = f32> {
+    let mut state = seed;
+    std::iter::repeat_with(move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f32 / (1_u64 << 24) as f32
+    })
+}
+
+/// Places in the air.
+fn air(scene: &Scene, low: Vec3, high: Vec3) -> Vec<Vec3> {
+    let tracer = Tracer::new(scene);
+    let is_clear = |place: &Vec3| {
+        let around = (0..200).map(|number| {
+            square_to_uniform_sphere(Vec2::new((number as f32 * 0.618_034).fract(), (number as f32 + 0.5) / 200.0))
+        });
+        around.into_iter().all(|direction| {
+            tracer
+                .closest_hit(*place, direction)
+                .is_none_or(|hit| hit.distance > CLEARANCE && hit.normal.dot(direction) < 0.0)
+        })
+    };
+    let mut numbers = random(7);
+    let mut next = move || Vec3::from_array(std::array::from_fn(|_| numbers.next().unwrap()));
+    std::iter::repeat_with(|| low + (high - low) * next()).filter(is_clear).take(PLACES).collect()
+}
+
+/// E/π for all normals at all places, by the meter; without the direct light of lights that are no surfaces.
+fn truth(scene: &Scene, places: &[Vec3]) -> Vec<Vec<DVec3>> {
+    let points: Vec<MeterPoint> =
+        places.iter().flat_map(|&position| normals().map(move |normal| MeterPoint { position, normal })).collect();
+    let read = |scene: &Scene, max_bounces: Option<u32>, paths: u32| {
+        let transport = Transport { seed: 99, max_bounces, ..Transport::default() };
+        let settings = MeterSettings { transport, samples_per_point: paths, threads: None };
+        measure_irradiance(scene, &points, &settings, &(), &CancelToken::default()).unwrap().readings
+    };
+    let mut light: Vec<DVec3> = read(scene, None, 256).iter().map(|reading| reading.irradiance / PI).collect();
+    if !scene.lights.is_empty() {
+        let mut lights_alone = scene.clone();
+        lights_alone.sky_radiance = Vec3::ZERO;
+        assert!(lights_alone.materials.iter().all(|material| material.emitted_radiance == Vec3::ZERO));
+        for (light, direct) in light.iter_mut().zip(read(&lights_alone, Some(0), 256)) {
+            *light -= direct.irradiance / PI;
+        }
+    }
+    light.chunks(NORMALS as usize).map(<[DVec3]>::to_vec).collect()
+}
+
+/// How far light is from the truth: the mean over all normals, and the root of the mean square, both over the mean.
+fn errors(shown: impl Iterator<Item = DVec3>, truth: &[DVec3]) -> [f64; 2] {
+    let mean = truth.iter().map(|&value| luminance(value)).sum::<f64>();
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for (shown, truth) in shown.zip(truth) {
+        let off = luminance(shown - *truth);
+        sum += off;
+        squares += off * off;
+    }
+    let count = truth.len() as f64;
+    [(sum / mean).abs(), (squares / count).sqrt() / (mean / count)]
+}
+
+/// The cube that comes nearest to the truth at its normals.
+fn best(truth: &[DVec3]) -> AmbientCube {
+    let mut moments = [DVec3::ZERO; FACES];
+    for (normal, light) in normals().zip(truth) {
+        for (axis, cos) in normal.to_array().into_iter().enumerate() {
+            moments[2 * axis + usize::from(cos < 0.0)] += *light * f64::from(cos * cos) / truth.len() as f64;
+        }
+    }
+    AmbientCube::fit(&moments)
+}
+
+/// Share of the places at which the mean and all normals are as near as asked for.
+struct Verdict {
+    shown: f64,
+    best: f64,
+    /// The 95th percentiles of both errors.
+    percentiles: [f64; 2],
+}
+
+fn judge(truth: &[Vec<DVec3>], shown: impl Fn(usize, Vec3) -> DVec3) -> Verdict {
+    let is_near = |[mean, rms]: [f64; 2]| mean <= 0.05 && rms <= 0.15;
+    let mut all = Vec::new();
+    let (mut near, mut near_best) = (0, 0);
+    for (place, truth) in truth.iter().enumerate() {
+        let of_place = errors(normals().map(|normal| shown(place, normal)), truth);
+        let cube = best(truth);
+        let of_best = errors(normals().map(|normal| cube.at(normal)), truth);
+        near += usize::from(is_near(of_place));
+        near_best += usize::from(is_near(of_best));
+        all.push(of_place);
+    }
+    let percentile = |which: usize| {
+        let mut values: Vec<f64> = all.iter().map(|errors| errors[which]).collect();
+        values.sort_unstable_by(f64::total_cmp);
+        values[values.len() * 95 / 100]
+    };
+    let share = |count: usize| count as f64 / truth.len() as f64;
+    Verdict { shown: share(near), best: share(near_best), percentiles: [percentile(0), percentile(1)] }
+}
+
+fn check(name: &str, scene: &Scene, low: Vec3, high: Vec3, boxes: VolumeBoxes) {
+    let settings = VolumeSettings { goal: Goal::Samples(1024), boxes, ..VolumeSettings::default() };
+    let bake = bake(scene, &settings);
+    let places = air(scene, low, high);
+    let truth = truth(scene, &places);
+    let bound: Vec<Bound> = bake.volumes.iter().map(Bound::new).collect();
+    let shown = |place: usize, normal: Vec3| look_up(&bound, places[place], normal).as_dvec3();
+    let verdict = judge(&truth, shown);
+    let [mean, rms] = verdict.percentiles;
+    println!(
+        "{name}: {} probes in {} volumes, {:.1} s of processor time; near at {:.1} % of {PLACES} places (the best cube: \
+         {:.1} %); 95 % have a mean within {:.1} % and normals within {:.1} %",
+        bake.report.texels,
+        bake.volumes.len(),
+        bake.report.cpu_seconds,
+        100.0 * verdict.shown,
+        100.0 * verdict.best,
+        100.0 * mean,
+        100.0 * rms,
+    );
+    assert!(verdict.shown >= 0.95, "{name}");
+    // What the check must find out.
+    let faults: [(&str, &dyn Fn(usize, Vec3) -> DVec3); 4] = [
+        ("5 % more", &|place, normal| 1.06 * shown(place, normal)),
+        ("E instead of E/π", &|place, normal| PI * shown(place, normal)),
+        ("upside down", &|place, normal| shown(place, normal * Vec3::new(1.0, -1.0, 1.0))),
+        ("the next place's", &|place, normal| shown((place + 1) % PLACES, normal)),
+    ];
+    for (fault, shown) in faults {
+        let found = judge(&truth, shown).shown;
+        assert!(found < 0.95, "{name}: {fault} passes with {found}");
+    }
+}
+
+/// The same with the glowing quad of the Cornell box as a light that is drawn in real time.
+fn lamp_apart(mut scene: Scene) -> Scene {
+    let radiance = scene.materials.iter().map(|material| material.emitted_radiance).fold(Vec3::ZERO, Vec3::max);
+    for material in &mut scene.materials {
+        material.emitted_radiance = Vec3::ZERO;
+    }
+    // Its corners are those of the file: 2.13 to 3.43 m and 2.27 to 3.32 m, at 5.488 m.
+    let middle = Vec3::new(2.78, 5.487, 2.795);
+    let lamp = SceneBuilder::default().rect_light("lamp", middle, Vec3::NEG_Y, Vec2::new(1.3, 1.05), radiance).build();
+    scene.lights = lamp.lights;
+    scene.indirect_only.insert(StableId::new("lamp"));
+    scene
+}
+
+fn one(low: Vec3, high: Vec3, spacing: f32) -> VolumeBoxes {
+    VolumeBoxes::Given(vec![VolumeBox { id: StableId::new("volume"), ..along_axes(low, high, spacing) }])
+}
+
+#[test]
+fn in_the_cornell_box() {
+    let scene = lamp_apart(glb::load("cornell"));
+    let (low, high) = (Vec3::ZERO, Vec3::new(5.5, 5.48, 5.59));
+    check("Cornell box", &scene, low, high, one(low, high, 0.3));
+}
+
+#[test]
+fn in_a_room_in_the_sun() {
+    let scene = denoise_scenes::sunlit().scene;
+    let (low, high) = (Vec3::ZERO, Vec3::new(3.5, 2.375, 3.0));
+    check("room in the sun", &scene, low, high, VolumeBoxes::default());
+}
