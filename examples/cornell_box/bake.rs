@@ -82,6 +82,7 @@ impl std::fmt::Display for Status {
                     Stage::Prepare => "preparing",
                     Stage::Gather => "baking",
                     Stage::Repair => "filling in",
+                    Stage::Probes => "probing the air",
                 };
                 write!(f, "{stage}: {:.0} %", 100.0 * at.fraction())?;
                 at.relative_stderr.map_or(Ok(()), |error| write!(f, ", error {:.1} %", 100.0 * error))

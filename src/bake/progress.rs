@@ -13,6 +13,8 @@ pub enum Stage {
     Gather,
     /// Filling the texels beside the charts.
     Repair,
+    /// Tracing for the probes of irradiance volumes.
+    Probes,
 }
 
 /// How far a bake is.

@@ -26,7 +26,7 @@ use super::gather::Estimate;
 use super::report::Intervals;
 use super::tiles::{ErrorTarget, LEAST_PATHS, Until};
 use super::workers::{Work, Workers};
-use super::{BakeError, BakeReport, BakeWarning, CancelToken, DARK, Goal, ProgressSink, Stage};
+use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, DARK, Goal, Progress, ProgressSink, Stage};
 use crate::artefact::StableId;
 use crate::math::{AmbientCube, FACES, luminance};
 use crate::scene::Scene;
@@ -153,7 +153,8 @@ pub fn bake_volumes(
 ) -> Result<VolumeBake, BakeError> {
     let clock = Instant::now();
     settings.validate()?;
-    let workers = Workers::new(settings.threads, progress, cancel)?;
+    let progress = OfProbes(progress);
+    let workers = Workers::new(settings.threads, &progress, cancel)?;
     workers.announce(Stage::Prepare)?;
     let Compiled { tracer, faults, census } = Compiled::for_probes(scene, &settings.transport);
     if !tracer.has_light() {
@@ -197,6 +198,17 @@ pub fn bake_volumes(
 }
 
 impl VolumeSettings {
+    /// What goes with a lightmap: two and a half times its error, since a probe's is that of six faces and what is lit by
+    /// several of them errs less; or four times its paths, since they come from a sphere.
+    pub fn beside(lightmap: &BakeSettings) -> Self {
+        let goal = match lightmap.goal {
+            Goal::Error(error) => Goal::Error((2.5 * error).min(1.0)),
+            Goal::Samples(count) => Goal::Samples(count.saturating_mul(4)),
+            Goal::Time(_) => Self::default().goal,
+        };
+        Self { transport: lightmap.transport, goal, boxes: VolumeBoxes::default(), threads: lightmap.threads }
+    }
+
     fn validate(&self) -> Result<(), BakeError> {
         let refuse = |reason: String| Err(BakeError::Settings { setting: "volume", reason });
         self.goal.validate()?;
@@ -248,6 +260,16 @@ impl VolumeBox {
     fn grid(&self) -> Grid {
         let spacing = self.spacing.unwrap_or((self.size.max_element() / 32.0).max(0.25));
         Grid::new(self.centre, self.rotation, self.size, spacing)
+    }
+}
+
+/// Tells of texels as of probes.
+struct OfProbes<'a>(&'a dyn ProgressSink);
+
+impl ProgressSink for OfProbes<'_> {
+    fn report(&self, progress: Progress) {
+        let stage = if progress.stage == Stage::Gather { Stage::Probes } else { progress.stage };
+        self.0.report(Progress { stage, ..progress });
     }
 }
 

@@ -134,9 +134,9 @@ fn solve_lit(
     }
     for pivot in 0..FACES {
         for row in pivot + 1..FACES {
-            let factor = rows[row][pivot] / rows[pivot][pivot];
-            for column in pivot..=FACES {
-                rows[row][column] -= factor * rows[pivot][column];
+            let (above, factor) = (rows[pivot], rows[row][pivot] / rows[pivot][pivot]);
+            for (entry, above) in rows[row].iter_mut().zip(above) {
+                *entry -= factor * above;
             }
         }
     }

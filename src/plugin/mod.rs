@@ -30,6 +30,9 @@
 //! # }
 //! ```
 //!
+//! What moves is lit by irradiance volumes ([`BakeVolumes`]): they come with the lightmaps where the scene has meshes that
+//! take no part in the bake. Boxes are found, or placed as [`ProbeVolume`].
+//!
 //! Mark what shall receive a lightmap with [`LightmapReceiver`] and what only blocks and reflects with
 //! [`LightBlocker`], on the thing or on anything above it; without a receiver anywhere every mesh receives. What
 //! a folder of the `kiln` command holds goes on a scene as [`BakedLightmaps`] beside its root.
@@ -62,14 +65,15 @@ mod baking;
 pub mod windowless;
 
 pub use display::{
-    AppliedLightmaps, BakedFolder, BakedFolderError, BakedLightmaps, KilnId, LightBaking, LightmapFiltering, stable_id,
+    AppliedLightmaps, BakedFolder, BakedFolderError, BakedLightmaps, BakedVolume, KilnId, LightBaking,
+    LightmapFiltering, stable_id,
 };
 
 #[cfg(feature = "bake")]
 pub use baking::{
-    AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, BakeScope, BakeView, CancelBake,
-    ClearLightmaps, EmissiveUnit, Extraction, ExtractionWarning, LightBlocker, LightmapFormat, LightmapLayout,
-    LightmapReceiver, RangeWindow, SceneSettings, Unreadable, Unsimulated, extract_scene,
+    AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, BakeScope, BakeView, BakeVolumes,
+    CancelBake, ClearLightmaps, EmissiveUnit, Extraction, ExtractionWarning, LightBlocker, LightmapFormat,
+    LightmapLayout, LightmapReceiver, ProbeVolume, RangeWindow, SceneSettings, Unreadable, Unsimulated, extract_scene,
 };
 
 use bevy::prelude::*;

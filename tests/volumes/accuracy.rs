@@ -18,8 +18,8 @@ use std::f64::consts::PI;
 const NORMALS: u32 = 32;
 const PLACES: usize = 200;
 
-/// A place is at least this far from any surface [m]: a sphere of 0.3 m touches nothing.
-const CLEARANCE: f32 = 0.15;
+/// A place is at least this far from any surface [m]: a sphere of half a metre touches nothing.
+const CLEARANCE: f32 = 0.25;
 
 fn normals() -> impl Iterator<Item = Vec3> {
     (0..NORMALS).map(|number| {
@@ -64,12 +64,12 @@ fn truth(scene: &Scene, places: &[Vec3]) -> Vec<Vec<DVec3>> {
         let settings = MeterSettings { transport, samples_per_point: paths, threads: None };
         measure_irradiance(scene, &points, &settings, &(), &CancelToken::default()).unwrap().readings
     };
-    let mut light: Vec<DVec3> = read(scene, None, 256).iter().map(|reading| reading.irradiance / PI).collect();
+    let mut light: Vec<DVec3> = read(scene, None, 1024).iter().map(|reading| reading.irradiance / PI).collect();
     if !scene.lights.is_empty() {
         let mut lights_alone = scene.clone();
         lights_alone.sky_radiance = Vec3::ZERO;
         assert!(lights_alone.materials.iter().all(|material| material.emitted_radiance == Vec3::ZERO));
-        for (light, direct) in light.iter_mut().zip(read(&lights_alone, Some(0), 256)) {
+        for (light, direct) in light.iter_mut().zip(read(&lights_alone, Some(0), 1024)) {
             *light -= direct.irradiance / PI;
         }
     }
@@ -100,66 +100,78 @@ fn best(truth: &[DVec3]) -> AmbientCube {
     AmbientCube::fit(&moments)
 }
 
-/// Share of the places at which the mean and all normals are as near as asked for.
+/// How far what is shown is from the truth: errors that 95 of 100 places stay below.
+#[derive(Clone, Copy, Debug)]
 struct Verdict {
-    shown: f64,
-    best: f64,
-    /// The 95th percentiles of both errors.
-    percentiles: [f64; 2],
+    /// Of the mean over all normals.
+    mean: f64,
+    /// Of single normals, as the root of the mean square over them.
+    normals: f64,
+    /// The same against the cube that comes nearest to the truth.
+    beside_best: f64,
+    /// Share of the places at which the mean is within 5 % and normals within 15 %.
+    near: f64,
+}
+
+impl Verdict {
+    /// What a volume can do: its mean is right, and it comes as near as a cube may.
+    fn is_right(self, best: Self) -> bool {
+        self.mean <= 0.05 && self.beside_best <= 0.15 && self.normals <= best.normals + 0.02
+    }
 }
 
 fn judge(truth: &[Vec<DVec3>], shown: impl Fn(usize, Vec3) -> DVec3) -> Verdict {
-    let is_near = |[mean, rms]: [f64; 2]| mean <= 0.05 && rms <= 0.15;
-    let mut all = Vec::new();
-    let (mut near, mut near_best) = (0, 0);
-    for (place, truth) in truth.iter().enumerate() {
-        let of_place = errors(normals().map(|normal| shown(place, normal)), truth);
+    let of_place = |(place, truth): (usize, &Vec<DVec3>)| {
+        let light = || normals().map(|normal| shown(place, normal));
         let cube = best(truth);
-        let of_best = errors(normals().map(|normal| cube.at(normal)), truth);
-        near += usize::from(is_near(of_place));
-        near_best += usize::from(is_near(of_best));
-        all.push(of_place);
-    }
+        let of_cube: Vec<DVec3> = normals().map(|normal| cube.at(normal)).collect();
+        let [mean, rms] = errors(light(), truth);
+        [mean, rms, errors(light(), &of_cube)[1]]
+    };
+    let all: Vec<[f64; 3]> = truth.iter().enumerate().map(of_place).collect();
     let percentile = |which: usize| {
         let mut values: Vec<f64> = all.iter().map(|errors| errors[which]).collect();
         values.sort_unstable_by(f64::total_cmp);
         values[values.len() * 95 / 100]
     };
-    let share = |count: usize| count as f64 / truth.len() as f64;
-    Verdict { shown: share(near), best: share(near_best), percentiles: [percentile(0), percentile(1)] }
+    let near = all.iter().filter(|[mean, rms, _]| *mean <= 0.05 && *rms <= 0.15).count() as f64 / all.len() as f64;
+    Verdict { mean: percentile(0), normals: percentile(1), beside_best: percentile(2), near }
 }
 
 fn check(name: &str, scene: &Scene, low: Vec3, high: Vec3, boxes: VolumeBoxes) {
-    let settings = VolumeSettings { goal: Goal::Samples(1024), boxes, ..VolumeSettings::default() };
+    let settings = VolumeSettings { goal: Goal::Samples(4096), boxes, ..VolumeSettings::default() };
     let bake = bake(scene, &settings);
     let places = air(scene, low, high);
     let truth = truth(scene, &places);
     let bound: Vec<Bound> = bake.volumes.iter().map(Bound::new).collect();
     let shown = |place: usize, normal: Vec3| look_up(&bound, places[place], normal).as_dvec3();
-    let verdict = judge(&truth, shown);
-    let [mean, rms] = verdict.percentiles;
+    let (verdict, best) = (judge(&truth, shown), judge(&truth, |place, normal| best(&truth[place]).at(normal)));
+    let percent = |value: f64| 100.0 * value;
     println!(
-        "{name}: {} probes in {} volumes, {:.1} s of processor time; near at {:.1} % of {PLACES} places (the best cube: \
-         {:.1} %); 95 % have a mean within {:.1} % and normals within {:.1} %",
+        "{name}: {} probes in {} volumes, {:.1} s of processor time. 95 % of {PLACES} places: mean within {:.1} %, normals \
+         within {:.1} % (the best cube {:.1} %; from it {:.1} %). Mean within 5 % and normals within 15 %: {:.1} % (the best \
+         cube {:.1} %)",
         bake.report.texels,
         bake.volumes.len(),
         bake.report.cpu_seconds,
-        100.0 * verdict.shown,
-        100.0 * verdict.best,
-        100.0 * mean,
-        100.0 * rms,
+        percent(verdict.mean),
+        percent(verdict.normals),
+        percent(best.normals),
+        percent(verdict.beside_best),
+        percent(verdict.near),
+        percent(best.near),
     );
-    assert!(verdict.shown >= 0.95, "{name}");
+    assert!(verdict.is_right(best), "{name}: {verdict:?}");
     // What the check must find out.
-    let faults: [(&str, &dyn Fn(usize, Vec3) -> DVec3); 4] = [
-        ("5 % more", &|place, normal| 1.06 * shown(place, normal)),
+    type Shown<'a> = &'a dyn Fn(usize, Vec3) -> DVec3;
+    let faults: [(&str, Shown); 4] = [
+        ("6 % more", &|place, normal| 1.06 * shown(place, normal)),
         ("E instead of E/π", &|place, normal| PI * shown(place, normal)),
         ("upside down", &|place, normal| shown(place, normal * Vec3::new(1.0, -1.0, 1.0))),
         ("the next place's", &|place, normal| shown((place + 1) % PLACES, normal)),
     ];
     for (fault, shown) in faults {
-        let found = judge(&truth, shown).shown;
-        assert!(found < 0.95, "{name}: {fault} passes with {found}");
+        assert!(!judge(&truth, shown).is_right(best), "{name}: {fault} passes");
     }
 }
 
@@ -185,7 +197,7 @@ fn one(low: Vec3, high: Vec3, spacing: f32) -> VolumeBoxes {
 fn in_the_cornell_box() {
     let scene = lamp_apart(glb::load("cornell"));
     let (low, high) = (Vec3::ZERO, Vec3::new(5.5, 5.48, 5.59));
-    check("Cornell box", &scene, low, high, one(low, high, 0.3));
+    check("Cornell box", &scene, low, high, one(low, high, 0.4));
 }
 
 #[test]

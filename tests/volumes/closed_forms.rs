@@ -3,7 +3,7 @@
 use crate::common::scenes::{SceneBuilder, generalised_furnace, grey};
 use crate::{along_axes, bake, given};
 use bevy_kiln::artefact::StableId;
-use bevy_kiln::bake::{Goal, Volume, VolumeSettings};
+use bevy_kiln::bake::{Goal, Volume, VolumeBake, VolumeSettings};
 use bevy_kiln::math::{AmbientCube, FACES, ambient_cube_weights, square_to_uniform_sphere};
 use bevy_kiln::scene::{Light, PointLight, Scene};
 use bevy_kiln::trace::{Estimator, Transport};
@@ -61,12 +61,15 @@ fn at(point: Vec3, paths: u32) -> VolumeSettings {
 #[test]
 fn in_a_furnace_every_face_of_every_probe_is_the_same() {
     let scene = generalised_furnace(3.0);
-    let settings = given(vec![along_axes(Vec3::new(-0.9, 0.1, -1.9), Vec3::new(1.9, 0.9, 0.9), 0.8)], 4096);
-    let volume = bake(&scene, &settings).volumes.remove(0);
+    let settings = given(vec![along_axes(Vec3::new(-0.9, 0.1, -1.9), Vec3::new(1.9, 0.9, 0.9), 0.8)], 1 << 14);
+    let VolumeBake { mut volumes, report } = bake(&scene, &settings);
+    let (volume, error) = (volumes.remove(0), 4.0 * report.relative_stderr.max as f32);
+    assert!(error > 0.0);
     assert_eq!(volume.resolution.to_array(), [4, 1, 4]);
     for cube in volume.cubes {
         for face in cube {
-            assert!((face / 3.0 - 1.0).abs().max_element() < 0.02, "{face}");
+            let off = (face / 3.0 - 1.0).abs().max_element();
+            assert!(off + error < 0.03, "{face}: off by {off}, noise {error}");
         }
     }
 }

@@ -74,6 +74,7 @@ fn name(stage: Stage) -> &'static str {
         Stage::Prepare => "prepare",
         Stage::Gather => "trace",
         Stage::Repair => "repair",
+        Stage::Probes => "probes",
     }
 }
 

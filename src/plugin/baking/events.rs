@@ -1,10 +1,11 @@
 //! What a game says to the baker and hears from it. All are triggered with `commands.trigger(...)` and heard by
 //! observers.
 
-use super::extract::extract_scene;
+use super::extract::{Extraction, extract_scene};
 use super::settings::SceneSettings;
 use crate::bake::{
     BakeError, BakePlan, BakeSettings, CancelToken, Denoise, Goal, LaterBounces, Layout, Lightmap, Progress, Stage,
+    Volume, VolumeBoxes, VolumeSettings,
 };
 use crate::trace::{Estimator, ForcedEffects, Sharing, Transport};
 use bevy::prelude::*;
@@ -90,6 +91,20 @@ pub enum BakeView {
     WhenDone,
 }
 
+/// Which irradiance volumes are baked beside the lightmaps, for what moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default, Debug, PartialEq, Clone)]
+pub enum BakeVolumes {
+    /// Those in the boxes that are placed as [`ProbeVolume`](super::ProbeVolume); without any, some around the scene if
+    /// there are meshes that take no part in the bake.
+    #[default]
+    WhereCalledFor,
+    /// The same, also without such meshes: for what has yet to spawn.
+    Always,
+    /// None.
+    Never,
+}
+
 /// Asks for a bake of the world as it is at the end of the frame. The game runs on; when the lightmaps are done
 /// they go on the entities, and [`BakeFinished`] is triggered. One bake runs at a time.
 #[derive(Event, Clone, Debug, PartialEq, Reflect)]
@@ -131,6 +146,8 @@ pub struct BakeLightmaps {
     pub threads: u32,
     /// How the textures hold their texels.
     pub format: LightmapFormat,
+    /// Which irradiance volumes are baked too. Their probes are sampled to two and a half times the error.
+    pub volumes: BakeVolumes,
 }
 
 impl Default for BakeLightmaps {
@@ -153,6 +170,7 @@ impl Default for BakeLightmaps {
             view: BakeView::default(),
             threads: 0,
             format: LightmapFormat::default(),
+            volumes: BakeVolumes::default(),
         }
     }
 }
@@ -167,6 +185,20 @@ impl BakeLightmaps {
     pub fn plan(&self, world: &mut World) -> Result<BakePlan, BakeError> {
         let scene = extract_scene(world, &self.scene).scene;
         BakePlan::for_scene(&scene, &self.bake_settings(), &(), &CancelToken::default())
+    }
+
+    /// What volumes are to be baked of a world, if any.
+    pub(super) fn volume_settings(&self, extraction: &Extraction) -> Option<VolumeSettings> {
+        let is_called_for = match self.volumes {
+            BakeVolumes::WhereCalledFor => extraction.has_movers || !extraction.volumes.is_empty(),
+            BakeVolumes::Always => true,
+            BakeVolumes::Never => false,
+        };
+        let boxes = match extraction.volumes.as_slice() {
+            [] => VolumeBoxes::default(),
+            placed => VolumeBoxes::Given(placed.to_vec()),
+        };
+        is_called_for.then(|| VolumeSettings { boxes, ..VolumeSettings::beside(&self.bake_settings()) })
     }
 
     /// The same in the baker's own words.
@@ -251,9 +283,12 @@ pub struct BakeFinished {
     pub entities: usize,
     /// What was left out or changed, one sentence each.
     pub warnings: Vec<String>,
-    /// The whole result with its report, to be written with `output::write_lightmap`.
+    /// The whole result with its report, to be written with `output::write_bake`.
     #[reflect(ignore)]
     pub lightmap: Arc<Lightmap>,
+    /// The irradiance volumes.
+    #[reflect(ignore)]
+    pub volumes: Arc<Vec<Volume>>,
 }
 
 /// There are no new lightmaps; the world is as it was.

@@ -9,7 +9,7 @@ use super::extract::extract_scene;
 use super::live::LiveView;
 use super::write_back::{Finished, clear, show_texels, write_back};
 use crate::artefact::StableId;
-use crate::bake::{BakeError, Baker, CancelToken, Lightmap, bake_lightmap};
+use crate::bake::{BakeError, Baker, CancelToken, Lightmap, Volume, VolumeBake, bake_lightmap, bake_volumes};
 use bevy::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -32,7 +32,15 @@ pub(super) struct Kiln {
 #[derive(Clone)]
 struct OnShow {
     lightmap: Arc<Lightmap>,
+    /// `None` while they are being baked: what is there stays.
+    volumes: Option<Arc<Vec<Volume>>>,
     target: Arc<Target>,
+}
+
+/// What a bake's thread brings.
+struct Baked {
+    lightmap: Lightmap,
+    volumes: VolumeBake,
 }
 
 /// Whose a bake is, and how it is shown.
@@ -49,7 +57,7 @@ struct Job {
     /// Whether anything of it has been shown.
     is_on_show: bool,
     /// In a mutex only because a resource must be shareable.
-    result: Mutex<Receiver<Result<Lightmap, BakeError>>>,
+    result: Mutex<Receiver<Result<Baked, BakeError>>>,
     target: Arc<Target>,
     warnings: Vec<String>,
 }
@@ -91,16 +99,24 @@ pub(super) fn start(world: &mut World) {
     let view = Arc::new(LiveView::new(viewpoint(world), asked.format, asked.view));
     let (sender, receiver) = channel();
     let baker = Arc::clone(&world.resource::<Kiln>().baker);
+    let volume_settings = asked.volume_settings(&extraction);
     let (scene, settings, their_view, their_cancel) =
         (extraction.scene, asked.bake_settings(), Arc::clone(&view), cancel.clone());
     let worker = std::thread::Builder::new().name("kiln".into()).spawn(move || {
-        let result = match asked.scope {
+        let lightmap = match asked.scope {
             BakeScope::Changes => {
                 let mut baker = baker.lock().unwrap_or_else(PoisonError::into_inner);
                 baker.bake(&scene, &settings, &*their_view, &their_cancel)
             }
             BakeScope::Everything => bake_lightmap(&scene, &settings, &*their_view, &their_cancel),
         };
+        let result = lightmap.and_then(|lightmap| {
+            let volumes = match &volume_settings {
+                Some(settings) => bake_volumes(&scene, settings, &*their_view, &their_cancel)?,
+                None => VolumeBake::default(),
+            };
+            Ok(Baked { lightmap, volumes })
+        });
         // Nobody listens any more once the app is gone.
         let _ = sender.send(result);
     });
@@ -149,7 +165,7 @@ pub(super) fn look_after(world: &mut World) {
         // It may have been done just before it was stopped; stopped it is, all the same.
         Ok(_) if job.cancel.is_cancelled() => give_up(world, &job, &BakeError::Cancelled, warnings),
         Err(error) => give_up(world, &job, &error, warnings),
-        Ok(lightmap) => finish(world, &job, Arc::new(lightmap), warnings),
+        Ok(baked) => finish(world, &job, baked, warnings),
     }
 }
 
@@ -161,7 +177,7 @@ fn show_news(world: &mut World) {
         job.is_on_show = true;
         let target = Arc::clone(&job.target);
         // What cannot be shown is said once, when the bake is done.
-        show(world, &OnShow { lightmap, target });
+        show(world, &OnShow { lightmap, volumes: None, target });
     } else {
         let due = job.view.due(Instant::now());
         show_texels(world, due);
@@ -169,15 +185,20 @@ fn show_news(world: &mut World) {
 }
 
 fn show(world: &mut World, on_show: &OnShow) -> super::write_back::Written {
-    let OnShow { lightmap, target } = on_show;
+    let OnShow { lightmap, volumes, target } = on_show;
     let Target { entities, ambient_baked, format } = &**target;
-    write_back(world, &Finished { lightmap, entities, ambient_baked: *ambient_baked, format: *format })
+    let volumes = volumes.as_ref().map(|volumes| volumes.as_slice());
+    write_back(world, &Finished { lightmap, volumes, entities, ambient_baked: *ambient_baked, format: *format })
 }
 
-fn finish(world: &mut World, job: &Job, lightmap: Arc<Lightmap>, mut warnings: Vec<String>) {
+fn finish(world: &mut World, job: &Job, baked: Baked, mut warnings: Vec<String>) {
+    let (lightmap, volumes) = (Arc::new(baked.lightmap), Arc::new(baked.volumes.volumes));
     let report = &lightmap.report;
-    warnings.extend(report.warnings.iter().map(ToString::to_string));
-    let on_show = OnShow { lightmap: Arc::clone(&lightmap), target: Arc::clone(&job.target) };
+    // What both say of the scene is said once.
+    let of_volumes = baked.volumes.report.warnings.iter().filter(|warning| !report.warnings.contains(warning));
+    warnings.extend(report.warnings.iter().chain(of_volumes).map(ToString::to_string));
+    let (target, shown) = (Arc::clone(&job.target), Some(Arc::clone(&volumes)));
+    let on_show = OnShow { lightmap: Arc::clone(&lightmap), volumes: shown, target };
     let written = show(world, &on_show);
     world.resource_mut::<Kiln>().last = Some(on_show);
     warnings.extend(written.warnings);
@@ -189,6 +210,7 @@ fn finish(world: &mut World, job: &Job, lightmap: Arc<Lightmap>, mut warnings: V
         entities: written.entities,
         warnings,
         lightmap: Arc::clone(&lightmap),
+        volumes,
     });
 }
 

@@ -19,3 +19,13 @@ pub struct LightmapReceiver {
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility)]
 pub struct LightBlocker;
+
+/// The box of an irradiance volume: a cube of side 1 under this entity's transform, so that its scale is the size of the
+/// box [m]. Where any is placed, volumes are baked there and nowhere else. Of boxes that overlap the smallest counts.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
+#[require(Transform, Visibility)]
+pub struct ProbeVolume {
+    /// Side of a cell [m]; `None` for a 32nd of the longest side of the box, and 0.25 m at least.
+    pub spacing: Option<f32>,
+}

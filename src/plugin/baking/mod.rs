@@ -9,11 +9,11 @@ mod settings;
 mod write_back;
 
 pub use events::{
-    BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, BakeScope, BakeView, CancelBake, ClearLightmaps,
-    LightmapFormat, LightmapLayout,
+    BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, BakeScope, BakeView, BakeVolumes, CancelBake,
+    ClearLightmaps, LightmapFormat, LightmapLayout,
 };
 pub use extract::{Extraction, ExtractionWarning, Unreadable, Unsimulated, extract_scene};
-pub use markers::{LightBlocker, LightmapReceiver};
+pub use markers::{LightBlocker, LightmapReceiver, ProbeVolume};
 pub use settings::{AmbientMode, EmissiveUnit, RangeWindow, SceneSettings};
 
 use super::KilnSystems;
@@ -23,6 +23,7 @@ pub(super) fn plugin(app: &mut App) {
     app.init_resource::<job::Kiln>()
         .register_type::<LightmapReceiver>()
         .register_type::<LightBlocker>()
+        .register_type::<ProbeVolume>()
         .register_type::<BakeLightmaps>()
         .register_type::<CancelBake>()
         .register_type::<ClearLightmaps>()

@@ -3,9 +3,10 @@
 use super::events::LightmapFormat;
 use crate::artefact::{MeshLayout, StableId};
 use crate::bake::{self, BakeWarning, Placement};
-use crate::output::{TexelFormat, texel_bytes};
+use crate::output::{TexelFormat, VolumeTexture, texel_bytes};
 use crate::plugin::display::{
-    FilteredBy, MutedLight, SharedLayout, Shown, attach, attached, detach, lightmap_sampler, mute_light, unmute_light,
+    FilteredBy, MutedLight, SharedLayout, Shown, ShownVolume, attach, attached, despawn_volumes, detach,
+    lightmap_sampler, mute_light, spawn_volume, unmute_light,
 };
 use bevy::asset::RenderAssetUsages;
 use bevy::ecs::entity::EntityHashMap;
@@ -17,6 +18,8 @@ use std::collections::BTreeMap;
 /// A bake that is ready to be shown.
 pub(super) struct Finished<'a> {
     pub(super) lightmap: &'a bake::Lightmap,
+    /// The volumes that take the place of those there; `None` leaves these.
+    pub(super) volumes: Option<&'a [bake::Volume]>,
     pub(super) entities: &'a BTreeMap<StableId, Entity>,
     pub(super) ambient_baked: bool,
     pub(super) format: LightmapFormat,
@@ -33,6 +36,7 @@ pub(super) struct Written {
 #[derive(Resource, Default)]
 struct OnShow {
     pages: Vec<Handle<Image>>,
+    volumes: Vec<Entity>,
     /// What an entity showed before its first bake.
     before: EntityHashMap<Option<Shown>>,
     /// The lights that were muted for it.
@@ -70,6 +74,10 @@ pub(super) fn write_back(world: &mut World, finished: &Finished) -> Written {
         written.warnings.push(warning.to_string());
     }
     mute(world, &mut shown, finished);
+    if let Some(volumes) = finished.volumes {
+        despawn_volumes(world, &mut shown.volumes);
+        shown.volumes = volumes.iter().map(|volume| put_volume(world, volume, finished.format)).collect();
+    }
     world.insert_resource(shown);
     written
 }
@@ -92,12 +100,27 @@ pub(super) fn show_texels(world: &mut World, pages: Vec<(usize, Vec<u8>)>) {
 
 /// Takes everything off again that [`write_back`] has put on.
 pub(super) fn clear(world: &mut World) {
-    let Some(shown) = world.remove_resource::<OnShow>() else { return };
+    let Some(mut shown) = world.remove_resource::<OnShow>() else { return };
+    despawn_volumes(world, &mut shown.volumes);
     for (entity, before) in shown.before {
         restore(world, entity, before);
     }
     unmute(world, &shown.lights);
     restore_ambient(world, shown.ambient_flag);
+}
+
+/// Puts an irradiance volume into the world.
+fn put_volume(world: &mut World, volume: &bake::Volume, format: LightmapFormat) -> Entity {
+    let texture = VolumeTexture::new(volume);
+    let [width, height, depth_or_array_layers] = texture.size.to_array();
+    let size = Extent3d { width, height, depth_or_array_layers };
+    let texels = texture.bytes(texel_format(format)).bytes;
+    let mut image =
+        Image::new(size, TextureDimension::D3, texels, texture_format(format), RenderAssetUsages::default());
+    image.sampler = lightmap_sampler();
+    let voxels = world.resource_mut::<Assets<Image>>().add(image);
+    let &bake::Volume { centre, rotation, size, falloff, .. } = volume;
+    spawn_volume(world, ShownVolume { name: volume.id.as_str().to_owned(), voxels, centre, rotation, size, falloff })
 }
 
 pub(super) fn texel_format(format: LightmapFormat) -> TexelFormat {
@@ -107,11 +130,15 @@ pub(super) fn texel_format(format: LightmapFormat) -> TexelFormat {
     }
 }
 
-fn image(page: &bake::Page, format: LightmapFormat, clamped: &mut u64) -> Image {
-    let texture = match format {
+fn texture_format(format: LightmapFormat) -> TextureFormat {
+    match format {
         LightmapFormat::Rgb9e5 => TextureFormat::Rgb9e5Ufloat,
         LightmapFormat::Rgba16f => TextureFormat::Rgba16Float,
-    };
+    }
+}
+
+fn image(page: &bake::Page, format: LightmapFormat, clamped: &mut u64) -> Image {
+    let texture = texture_format(format);
     let encoded = texel_bytes(page, texel_format(format));
     *clamped += encoded.clamped;
     let size = Extent3d { width: page.width, height: page.height, depth_or_array_layers: 1 };

@@ -3,6 +3,7 @@
 use super::attach::{Shown, attach, detach};
 use super::filtering::FilteredBy;
 use super::mute::{MutedLight, mute_light, unmute_light};
+use super::volume::{ShownVolume, despawn_volumes, spawn_volume};
 use super::{BakedFolder, stable_id};
 use crate::artefact::StableId;
 use bevy::light::RectLight;
@@ -22,6 +23,8 @@ pub struct BakedLightmaps(pub Handle<BakedFolder>);
 pub struct AppliedLightmaps {
     folder: Option<AssetId<BakedFolder>>,
     done: HashSet<Entity>,
+    /// What was put into the world: irradiance volumes.
+    volumes: Vec<Entity>,
 }
 
 impl AppliedLightmaps {
@@ -52,10 +55,12 @@ pub(crate) fn apply_baked_lightmaps(world: &mut World) {
             undo(world, &mut applied);
         }
         let jobs = find_jobs(world, root, &folder, &applied);
-        if jobs.is_empty() && applied.folder.is_none() {
+        let volumes = if applied.folder.is_none() { volumes_of(world, &folder) } else { Vec::new() };
+        if jobs.is_empty() && volumes.is_empty() && applied.folder.is_none() {
             continue;
         }
         applied.folder = Some(folder.id());
+        applied.volumes.extend(volumes.into_iter().map(|volume| spawn_volume(world, volume)));
         for (entity, job) in jobs {
             match job {
                 Job::Attach(shown) => {
@@ -94,7 +99,23 @@ fn undo(world: &mut World, applied: &mut AppliedLightmaps) {
             detach(world, entity);
         }
     }
+    despawn_volumes(world, &mut applied.volumes);
     applied.folder = None;
+}
+
+/// The irradiance volumes of a folder, once it is loaded.
+fn volumes_of(world: &World, folder: &Handle<BakedFolder>) -> Vec<ShownVolume> {
+    let folder = world.get_resource::<Assets<BakedFolder>>().and_then(|folders| folders.get(folder));
+    let entries = folder.into_iter().flat_map(|folder| folder.manifest.volumes.iter().zip(&folder.volumes));
+    let shown = entries.map(|(volume, voxels)| ShownVolume {
+        name: volume.id.as_str().to_owned(),
+        voxels: voxels.clone(),
+        centre: volume.centre.into(),
+        rotation: Quat::from_array(volume.rotation),
+        size: volume.size.into(),
+        falloff: volume.falloff,
+    });
+    shown.collect()
 }
 
 fn find_jobs(

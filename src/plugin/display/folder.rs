@@ -17,6 +17,9 @@ pub struct BakedFolder {
     /// The textures, in the manifest's order.
     #[dependency]
     pub pages: Vec<Handle<Image>>,
+    /// The textures of the irradiance volumes, in the manifest's order.
+    #[dependency]
+    pub volumes: Vec<Handle<Image>>,
     /// The layouts of the meshes that the bake laid out anew, in their file's order.
     pub(crate) meshes: Vec<SharedLayout>,
 }
@@ -70,16 +73,17 @@ impl AssetLoader for BakedFolderLoader {
         let text = String::from_utf8(bytes).map_err(|_| BakedFolderError::NoText)?;
         let manifest = Manifest::from_ron(&text)?;
         let here = load_context.path().clone_owned();
-        let pages = manifest.pages.iter().map(|page| {
-            let path = here.resolve_embed(&AssetPath::from(PathBuf::from(&page.file)));
+        let mut load = |file: &str| {
+            let path = here.resolve_embed(&AssetPath::from(PathBuf::from(file)));
             // KTX2 holds no sampler, and a game may have made `nearest` its default.
             let with_sampler = |settings: &mut ImageLoaderSettings| {
                 settings.sampler = lightmap_sampler();
                 settings.is_srgb = false;
             };
             load_context.load_builder().with_settings(with_sampler).load(path)
-        });
-        let pages = pages.collect();
+        };
+        let pages = manifest.pages.iter().map(|page| load(&page.file)).collect();
+        let volumes = manifest.volumes.iter().map(|volume| load(&volume.file)).collect();
         let meshes = match &manifest.meshes {
             Some(file) => {
                 let path = here.resolve_embed(&AssetPath::from(PathBuf::from(file)));
@@ -88,7 +92,7 @@ impl AssetLoader for BakedFolderLoader {
             None => Vec::new(),
         };
         check_meshes(&manifest, meshes.len())?;
-        Ok(BakedFolder { manifest, pages, meshes: meshes.into_iter().map(SharedLayout::from).collect() })
+        Ok(BakedFolder { manifest, pages, volumes, meshes: meshes.into_iter().map(SharedLayout::from).collect() })
     }
 }
 

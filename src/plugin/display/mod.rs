@@ -9,6 +9,7 @@ mod light_baking;
 mod mute;
 mod relay;
 mod stable_path;
+mod volume;
 mod wear;
 
 pub use apply::{AppliedLightmaps, BakedLightmaps};
@@ -16,6 +17,7 @@ pub use filtering::LightmapFiltering;
 pub use folder::{BakedFolder, BakedFolderError};
 pub use light_baking::LightBaking;
 pub use stable_path::{KilnId, stable_id};
+pub use volume::BakedVolume;
 
 #[cfg(feature = "bake")]
 pub(crate) use attach::{Shown, attach, attached, detach};
@@ -27,6 +29,8 @@ pub(crate) use filtering::FilteredBy;
 pub(crate) use folder::lightmap_sampler;
 #[cfg(feature = "bake")]
 pub(crate) use mute::{MutedLight, mute_light, unmute_light};
+#[cfg(feature = "bake")]
+pub(crate) use volume::{ShownVolume, despawn_volumes, spawn_volume};
 #[cfg(feature = "bake")]
 pub(crate) use wear::{SharedLayout, own_mesh};
 
@@ -40,6 +44,7 @@ pub(super) fn plugin(app: &mut App) {
         .register_type::<KilnId>()
         .register_type::<LightBaking>()
         .register_type::<BakedLightmaps>()
+        .register_type::<BakedVolume>()
         .register_type::<LightmapFiltering>()
         .init_resource::<LightmapFiltering>()
         .add_observer(apply::take_off_with_component)

@@ -11,6 +11,7 @@ mod mesh;
 mod pose;
 mod shadow_flags;
 mod texture;
+mod volume;
 mod warning;
 
 pub use texture::Unreadable;
@@ -19,6 +20,7 @@ pub use warning::{ExtractionWarning, Unsimulated};
 use super::markers::{LightBlocker, LightmapReceiver};
 use super::settings::SceneSettings;
 use crate::artefact::StableId;
+use crate::bake::VolumeBox;
 use crate::plugin::stable_id;
 use crate::scene::{LightmapRequest, Scene, unique_ids};
 use bevy::camera::visibility::RenderLayers;
@@ -34,6 +36,10 @@ pub struct Extraction {
     pub warnings: Vec<ExtractionWarning>,
     /// Which entity each instance and each light is.
     pub entities: BTreeMap<StableId, Entity>,
+    /// The boxes that are placed for irradiance volumes.
+    pub volumes: Vec<VolumeBox>,
+    /// Whether any mesh that is seen takes no part, as a thing that moves.
+    pub has_movers: bool,
     seen: Seen,
 }
 
@@ -49,7 +55,8 @@ struct Seen {
 pub fn extract_scene(world: &mut World, settings: &SceneSettings) -> Extraction {
     let mut out = Extraction::default();
     let lights = light::find(world, settings, &mut out.warnings);
-    let meshes = find_meshes(world, settings, &mut out.warnings);
+    let meshes = find_meshes(world, settings, &mut out);
+    volume::extract(world, settings, &mut out);
     out.warnings.sort_by_cached_key(ToString::to_string);
     let things: Vec<Thing> = meshes.into_iter().chain(lights).collect();
     for thing in name_all(world, things, &mut out) {
@@ -115,15 +122,16 @@ fn name_all(world: &World, mut things: Vec<Thing>, out: &mut Extraction) -> Vec<
 }
 
 /// The meshes that take part, as their marks say.
-fn find_meshes(world: &mut World, settings: &SceneSettings, warnings: &mut Vec<ExtractionWarning>) -> Vec<Thing> {
+fn find_meshes(world: &mut World, settings: &SceneSettings, out: &mut Extraction) -> Vec<Thing> {
     let only_marked = world.query_filtered::<(), With<LightmapReceiver>>().iter(world).next().is_some();
     let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
     let meshes: Vec<Entity> = meshes.iter(world).collect();
-    let world = &*world;
+    let (world, warnings) = (&*world, &mut out.warnings);
     let mut things = Vec::new();
     for entity in meshes.into_iter().filter(|&entity| is_visible(world, entity)) {
         let mark = nearest_mark(world, entity);
         if only_marked && mark.is_none() {
+            out.has_movers = true;
             continue;
         }
         let mut role = mark.unwrap_or_else(|| Some(LightmapRequest::default()));
@@ -139,6 +147,7 @@ fn find_meshes(world: &mut World, settings: &SceneSettings, warnings: &mut Vec<E
         if let Some(how) = pose::deformation(world, entity) {
             // A character that walks on must not leave its shadow behind.
             if mark.is_none() {
+                out.has_movers = true;
                 warnings.push(ExtractionWarning::Deformed { name, how });
                 continue;
             }

@@ -23,7 +23,7 @@ impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
     /// on.
     pub(in crate::trace::path) fn look_around(mut self, position: Vec3) -> [Arrived; 2] {
         let context = LightContext { position, normal: None };
-        let straight = self.from_source(&context);
+        let straight = self.straight_from_source(&context);
         let [u, v, u_survive, _] = self.sampler.draw(Dimensions::Scatter { vertex: 0 });
         let direction = square_to_uniform_sphere(Vec2::new(u, v));
         self.is_spread = true;
@@ -32,7 +32,7 @@ impl<'t, 'p, const K: u32, S: Sampler> Walk<'t, 'p, K, S> {
         [straight, Arrived { direction, radiance: self.radiance }]
     }
 
-    fn from_source(&mut self, context: &LightContext) -> Arrived {
+    fn straight_from_source(&mut self, context: &LightContext) -> Arrived {
         let sample = if self.samples_sources() { self.draw_source(context) } else { None };
         let Some(sample) = sample else { return Arrived { direction: Vec3::Y, radiance: Vec3::ZERO } };
         let way = Departure {

@@ -56,9 +56,11 @@ pub(super) fn extract(world: &World, thing: &Thing, kind: LightKind, settings: &
         LightKind::Spot => reader.spot(),
         LightKind::Directional => reader.directional(),
     };
-    if LightBaking::of(world, thing.entity) == LightBaking::MixedIndirect {
-        out.scene.indirect_only.insert(thing.id.clone());
-    }
+    match LightBaking::of(world, thing.entity) {
+        LightBaking::Baked => out.scene.off_in_real_time.insert(thing.id.clone()),
+        LightBaking::MixedIndirect => out.scene.indirect_only.insert(thing.id.clone()),
+        LightBaking::MixedDirect | LightBaking::RealTime => false,
+    };
     out.scene.lights.extend(light);
     if let Some(component) = cookie(world, thing.entity, kind) {
         out.warnings.push(ExtractionWarning::LightPicture { name: thing.name.clone(), component });
