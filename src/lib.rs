@@ -58,12 +58,12 @@ pub mod trace;
 pub mod prelude {
     #[cfg(feature = "bake")]
     pub use crate::plugin::{
-        AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, BakeScope, BakeView, CancelBake,
-        ClearLightmaps, EmissiveUnit, LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver, RangeWindow,
-        SceneSettings,
+        AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, BakeScope, BakeView, BakeVolumes,
+        CancelBake, ClearLightmaps, EmissiveUnit, LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver,
+        ProbeVolume, RangeWindow, SceneSettings,
     };
     pub use crate::plugin::{
-        BakedFolder, BakedLightmaps, KilnId, KilnPlugin, KilnSystems, LightBaking, LightmapFiltering,
+        BakedFolder, BakedLightmaps, BakedVolume, KilnId, KilnPlugin, KilnSystems, LightBaking, LightmapFiltering,
     };
 }
 

@@ -18,6 +18,8 @@ mod live;
 mod materials;
 #[path = "plugin/meshes.rs"]
 mod meshes;
+#[path = "plugin/volumes.rs"]
+mod volumes;
 
 use bevy::ecs::system::RunSystemOnce;
 use bevy::gltf::Gltf;

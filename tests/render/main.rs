@@ -3,6 +3,9 @@
 //! machine (`CI=true`) they fail.
 #![cfg(all(feature = "cli", feature = "window"))]
 
+#[allow(dead_code, reason = "one part of it is used")]
+#[path = "../common/mod.rs"]
+mod common;
 mod compare;
 mod example;
 mod live;
@@ -11,6 +14,7 @@ mod parity;
 mod picture;
 mod pieces;
 mod renderer;
+mod volume;
 mod worn;
 
 /// Ends a test that this machine cannot run.
