@@ -25,7 +25,7 @@ use std::borrow::Cow;
 use std::time::Instant;
 
 /// A finished lightmap bake.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Lightmap {
     /// The textures.
     pub pages: Vec<Page>,

@@ -17,7 +17,7 @@ const RADIUS: f32 = 0.4;
 const DISTANCE: f32 = 20.0;
 
 /// Half floats, a mesh of triangles instead of a sphere, and 11 bits of a texel.
-const TOLERANCE: f32 = 0.015;
+const TOLERANCE: f32 = 0.005;
 
 /// A volume whose faces and places all differ.
 fn volume(centre: Vec3, size: Vec3, rotation: Quat, falloff: f32, level: f32) -> Volume {
