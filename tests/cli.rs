@@ -111,6 +111,30 @@ fn a_sound_bake_writes_a_whole_folder_and_ends_with_its_json() {
     assert!(warnings.len() == 1 && warnings[0].contains("light.light\" has no UV1"), "{warnings:?}");
 }
 
+/// Volumes where they are asked for: a texture of three dimensions each, which the manifest names.
+#[test]
+fn volumes_are_written_beside_the_lightmap() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let (scene, out_name) = (data("cornell.glb"), out.to_str().unwrap());
+    let common = ["bake", scene.to_str().unwrap(), "-o", out_name, "--spp", "16", "--density", "2", "--json"];
+    let without = run(&common);
+    assert_eq!(without.status.code(), Some(0), "{}", text(&without.stderr));
+    assert_eq!(last_json(&without)["volumes"].as_array().map(Vec::len), Some(0));
+    let with = run(&[&common[..], &["--volumes=0.5"]].concat());
+    assert_eq!(with.status.code(), Some(0), "{}", text(&with.stderr));
+    let json = last_json(&with);
+    let volume = &json["volumes"][0];
+    assert_eq!((volume["id"].as_str(), &volume["probes"]), (Some("volume/0"), &serde_json::json!([12, 11, 12])));
+    let manifest = Manifest::from_ron(&std::fs::read_to_string(out.join("kiln.ron")).unwrap()).unwrap();
+    assert_eq!(manifest.volumes.len(), 1);
+    let file = std::fs::read(out.join(&manifest.volumes[0].file)).unwrap();
+    let header = ktx2::Reader::new(&file[..]).unwrap().header();
+    assert_eq!([header.pixel_width, header.pixel_height, header.pixel_depth], [12, 22, 36]);
+    let refused = run(&[&common[..], &["--volumes=-1"]].concat());
+    assert_fails(&refused, 1, "a spacing of -1 m cannot be");
+}
+
 #[test]
 fn without_json_a_person_reads_the_plan_and_the_report_on_standard_output() {
     let folder = temp_dir::TempDir::new().unwrap();

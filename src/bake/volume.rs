@@ -6,7 +6,8 @@
 //!
 //! 1. `automatic` finds boxes, unless they are given; `nesting` says which of several counts where they overlap;
 //! 2. `stand` moves probes out of bodies, and `rooms` finds which of them see each other;
-//! 3. `measure` traces paths from each until it is known well enough;
+//! 3. `surfaces` measures a coarse lightmap, at which paths end; `measure` traces paths from each probe until it is known
+//!    well enough;
 //! 4. `fill` gives a value to those that stand nowhere, and keeps light from shining through thin walls.
 //!
 //! What a volume holds is what real time lacks. Bevy draws the direct light of point, spot and directional lights on
@@ -20,13 +21,18 @@ mod measure;
 mod nesting;
 mod rooms;
 mod stand;
+mod surfaces;
 
 use super::endless::{refuse_endless_paths, spread};
 use super::gather::Estimate;
 use super::report::Intervals;
 use super::tiles::{ErrorTarget, LEAST_PATHS, Until};
+use super::unwrap::LaidOut;
 use super::workers::{Work, Workers};
-use super::{BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, DARK, Goal, Progress, ProgressSink, Stage};
+use super::{
+    BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, DARK, Goal, LaterBounces, Progress, ProgressSink,
+    Stage,
+};
 use crate::artefact::StableId;
 use crate::math::{AmbientCube, FACES, luminance};
 use crate::scene::Scene;
@@ -51,6 +57,11 @@ pub struct VolumeSettings {
     /// When a probe has been sampled enough: by its error, that of a face of its cube as the root of the mean square
     /// over all six, or by its paths. [`Goal::Time`] is refused.
     pub goal: Goal,
+    /// How light is found that has met more than one surface.
+    pub later_bounces: LaterBounces,
+    /// Texels per metre of the coarse lightmap at which paths end where [`LaterBounces::Reused`] asks for it; fewer in a
+    /// large scene.
+    pub density: f32,
     /// Where they are.
     pub boxes: VolumeBoxes,
     /// Threads that trace; `None` for all cores.
@@ -59,7 +70,14 @@ pub struct VolumeSettings {
 
 impl Default for VolumeSettings {
     fn default() -> Self {
-        Self { transport: Transport::default(), goal: Goal::Error(0.05), boxes: VolumeBoxes::default(), threads: None }
+        Self {
+            transport: Transport::default(),
+            goal: Goal::Error(0.05),
+            later_bounces: LaterBounces::Reused,
+            density: 4.0,
+            boxes: VolumeBoxes::default(),
+            threads: None,
+        }
     }
 }
 
@@ -156,7 +174,12 @@ pub fn bake_volumes(
     let progress = OfProbes(progress);
     let workers = Workers::new(settings.threads, &progress, cancel)?;
     workers.announce(Stage::Prepare)?;
-    let Compiled { tracer, faults, census } = Compiled::for_probes(scene, &settings.transport);
+    let (asked, surfaces) = (scene, settings.surfaces(scene));
+    let alike = surfaces::all_alike(asked);
+    let laid_out = settings.asks_for_surfaces().then(|| LaidOut::new(&alike, &surfaces, &workers)).transpose()?;
+    let scene = laid_out.as_ref().map_or(asked, |laid_out| &laid_out.scene);
+    let Compiled { tracer, mut faults, census } = Compiled::for_probes(scene, &settings.transport);
+    faults.retain(|fault| !fault.kind.costs_only_the_lightmap());
     if !tracer.has_light() {
         let because = faults.first().map_or_else(String::new, |fault| format!(" ({fault})"));
         return Err(BakeError::NoLight { because });
@@ -185,6 +208,10 @@ pub fn bake_volumes(
             tracer.light_around(point, sobol, &settings.transport, tally);
         }
     })?;
+    let first_pass = match &laid_out {
+        Some(laid_out) => surfaces::teach(&tracer, laid_out, &surfaces, &workers, cancel)?,
+        None => None,
+    };
     let Measured { mut moments, estimates, until } = Measured::new(&points, settings, &tracer, &workers)?;
     workers.announce(Stage::Repair)?;
     let mut volumes = Vec::new();
@@ -194,24 +221,29 @@ pub fn bake_volumes(
     }
     let intervals = Intervals::of(&estimates.results, until);
     let report = BakeReport::of(&estimates, clock.elapsed(), &settings.transport, warnings.into_iter());
-    Ok(VolumeBake { volumes, report: BakeReport { intervals, ..report } })
+    Ok(VolumeBake { volumes, report: BakeReport { intervals, ..report }.with(first_pass) })
 }
 
 impl VolumeSettings {
     /// What goes with a lightmap: two and a half times its error, since a probe's is that of six faces and what is lit by
     /// several of them errs less; or four times its paths, since they come from a sphere.
+    ///
+    /// Paths end at a coarse lightmap in any case: its bias is far below what a cube of six faces is off by.
     pub fn beside(lightmap: &BakeSettings) -> Self {
         let goal = match lightmap.goal {
             Goal::Error(error) => Goal::Error((2.5 * error).min(1.0)),
             Goal::Samples(count) => Goal::Samples(count.saturating_mul(4)),
             Goal::Time(_) => Self::default().goal,
         };
-        Self { transport: lightmap.transport, goal, boxes: VolumeBoxes::default(), threads: lightmap.threads }
+        Self { transport: lightmap.transport, goal, threads: lightmap.threads, ..Self::default() }
     }
 
     fn validate(&self) -> Result<(), BakeError> {
         let refuse = |reason: String| Err(BakeError::Settings { setting: "volume", reason });
         self.goal.validate()?;
+        if !(self.density > 0.0 && self.density.is_finite()) {
+            return refuse(format!("a density of {} texels per metre cannot be; ask for 4 or so", self.density));
+        }
         if let Goal::Time(_) = self.goal {
             return refuse("volumes are baked to an error or by paths; ask for one of these".into());
         }

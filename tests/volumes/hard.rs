@@ -86,6 +86,24 @@ fn what_cannot_be_is_refused_with_a_reason() {
     assert_eq!(bake_volumes(&scene, &given(vec![cube], 16), &(), &cancel), Err(BakeError::Cancelled));
 }
 
+/// A coarse map of a wide scene stays small, and objects that ask for many texels do not make it large.
+#[test]
+fn a_wide_scene_is_no_more_work_than_a_small_one() {
+    let scene = |side: f32| {
+        let floor = [Vec3::Z * side, Vec3::X * side];
+        let corner = -0.5 * Vec3::new(side, 0.0, side);
+        SceneBuilder::default().quad("floor", corner, floor, grey(0.5)).sky(Vec3::ONE).build()
+    };
+    let boxes = VolumeBoxes::Given(vec![along_axes(Vec3::Y, Vec3::new(1.0, 2.0, 1.0), 0.5)]);
+    let settings = VolumeSettings { goal: Goal::Samples(64), boxes, ..VolumeSettings::default() };
+    let texels = |scene: &Scene| bake(scene, &settings).report.first_pass.unwrap().texels;
+    let mut wide = scene(4000.0);
+    let few = texels(&wide);
+    wide.instances[0].lightmap.as_mut().unwrap().density = Some(0.5);
+    assert_eq!(texels(&wide), few);
+    assert!((1000..100_000).contains(&few) && texels(&scene(2.0)) < 200, "{few}");
+}
+
 /// More than Bevy shows at once: baked all the same, and said.
 #[test]
 fn the_limit_of_eight_is_told() {

@@ -14,7 +14,9 @@ mod layout;
 mod walls;
 
 use bevy_kiln::artefact::StableId;
-use bevy_kiln::bake::{CancelToken, Goal, VolumeBake, VolumeBox, VolumeBoxes, VolumeSettings, bake_volumes};
+use bevy_kiln::bake::{
+    CancelToken, Goal, LaterBounces, VolumeBake, VolumeBox, VolumeBoxes, VolumeSettings, bake_volumes,
+};
 use bevy_kiln::scene::Scene;
 use glam::{Quat, Vec3};
 
@@ -29,8 +31,14 @@ fn along_axes(low: Vec3, high: Vec3, spacing: f32) -> VolumeBox {
     }
 }
 
+/// Whole paths, so that closed forms hold to their noise.
 fn given(boxes: Vec<VolumeBox>, paths: u32) -> VolumeSettings {
-    VolumeSettings { goal: Goal::Samples(paths), boxes: VolumeBoxes::Given(boxes), ..VolumeSettings::default() }
+    VolumeSettings {
+        goal: Goal::Samples(paths),
+        later_bounces: LaterBounces::Traced,
+        boxes: VolumeBoxes::Given(boxes),
+        ..VolumeSettings::default()
+    }
 }
 
 fn bake(scene: &Scene, settings: &VolumeSettings) -> VolumeBake {

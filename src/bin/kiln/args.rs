@@ -198,6 +198,10 @@ pub(crate) struct BakeArgs {
     /// Leave the noise in the texels
     #[arg(long)]
     pub(crate) no_denoise: bool,
+    /// Bake irradiance volumes around the scene, for things that move, with probes this far apart [default: 0.25 m, or
+    /// more in a large scene]
+    #[arg(long, value_name = "METRES", num_args = 0..=1, require_equals = true)]
+    pub(crate) volumes: Option<Option<f32>>,
     #[arg(long, hide = true)]
     pub(crate) resume: bool,
     #[arg(long, hide = true)]

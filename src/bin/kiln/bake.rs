@@ -5,8 +5,12 @@ use crate::failure::Failure;
 use crate::progress::Show;
 use crate::scene;
 use crate::talk::{Talk, warn};
-use bevy_kiln::bake::{BakePlan, BakeReport, BakeSettings, CancelToken, Denoise, Jump, RelativeError, bake_lightmap};
-use bevy_kiln::output::{ReferenceError, WrittenLightmap, compare_with_reference, write_lightmap};
+use bevy_kiln::bake::{
+    BakePlan, BakeReport, BakeSettings, CancelToken, Denoise, Jump, RelativeError, VolumeBake, bake_lightmap,
+    bake_volumes,
+};
+use bevy_kiln::output::{ReferenceError, WrittenLightmap, compare_with_reference, write_bake};
+use bevy_kiln::plugin::{BakeVolumes, Extraction};
 use bevy_kiln::trace::Effect;
 use serde_json::json;
 
@@ -28,19 +32,24 @@ pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> 
     let result = bake_lightmap(&extraction.scene, &settings, &show, cancel);
     show.end();
     let lightmap = result?;
+    let volumes = volumes(args, &extraction, &settings, cancel)?;
     if cancel.is_cancelled() {
         return Err(Failure::Stopped);
     }
     let name = args.scene.scene.display().to_string();
-    let written = write_lightmap(&lightmap, &name, &args.output, args.format).map_err(Failure::failed)?;
+    let written = write_bake(&lightmap, &volumes.volumes, &name, &args.output, args.format).map_err(Failure::failed)?;
     let report = &lightmap.report;
     let planned = |warning: &String| plan.warnings.iter().any(|known| known.to_string() == *warning);
-    let late = report.warnings.iter().chain(&written.warnings).map(ToString::to_string);
+    let of_volumes = volumes.report.warnings.iter().filter(|warning| !report.warnings.contains(warning));
+    let late = report.warnings.iter().chain(of_volumes).chain(&written.warnings).map(ToString::to_string);
     let (known, late): (Vec<String>, Vec<String>) = late.partition(planned);
     warn(&late);
     warnings.extend(known.into_iter().chain(late));
     talk.report("texels", report);
     talk.repair(report);
+    if !volumes.volumes.is_empty() {
+        talk.report(&format!("probes in {} irradiance volumes", volumes.volumes.len()), &volumes.report);
+    }
     if report.energy_balance.is_none() {
         talk.say("  energy balance: none (light escapes or is cut, or not all surfaces are diffuse)");
     }
@@ -58,13 +67,31 @@ pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> 
     }
     talk.say(format_args!("wrote {} files into {}", written.files.len(), args.output.display()));
     if args.json {
-        Talk::Out.say(summary(report, &written, reference, &warnings));
+        Talk::Out.say(summary(report, &volumes, &written, reference, &warnings));
     }
     Ok(())
 }
 
+/// The irradiance volumes beside the lightmap.
+fn volumes(
+    args: &BakeArgs,
+    extraction: &Extraction,
+    settings: &BakeSettings,
+    cancel: &CancelToken,
+) -> Result<VolumeBake, Failure> {
+    let which = if args.volumes.is_some() { BakeVolumes::Always } else { BakeVolumes::WhereCalledFor };
+    let Some(settings) = extraction.volume_settings(settings, which, args.volumes.flatten()) else {
+        return Ok(VolumeBake::default());
+    };
+    let show = Show::new();
+    let result = bake_volumes(&extraction.scene, &settings, &show, cancel);
+    show.end();
+    Ok(result?)
+}
+
 fn summary(
     report: &BakeReport,
+    volumes: &VolumeBake,
     written: &WrittenLightmap,
     reference: Option<ReferenceError>,
     warnings: &[String],
@@ -98,6 +125,9 @@ fn summary(
             json!({ "joints": seams.joints, "before": jump(seams.before), "after": jump(seams.after) })
         }),
         "reference": reference.map(|error| json!({ "before": error.before, "after": error.after })),
+        "volumes": volumes.volumes.iter().map(|volume| {
+            json!({ "id": volume.id.as_str(), "centre": volume.centre.to_array(), "size": volume.size.to_array(), "probes": volume.resolution.to_array() })
+        }).collect::<Vec<_>>(),
         "energy_balance": report.energy_balance,
         "clamped_light": report.clamped_light,
         "forced": {

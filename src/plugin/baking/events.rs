@@ -1,11 +1,11 @@
 //! What a game says to the baker and hears from it. All are triggered with `commands.trigger(...)` and heard by
 //! observers.
 
-use super::extract::{Extraction, extract_scene};
+use super::extract::extract_scene;
 use super::settings::SceneSettings;
 use crate::bake::{
     BakeError, BakePlan, BakeSettings, CancelToken, Denoise, Goal, LaterBounces, Layout, Lightmap, Progress, Stage,
-    Volume, VolumeBoxes, VolumeSettings,
+    Volume,
 };
 use crate::trace::{Estimator, ForcedEffects, Sharing, Transport};
 use bevy::prelude::*;
@@ -148,6 +148,9 @@ pub struct BakeLightmaps {
     pub format: LightmapFormat,
     /// Which irradiance volumes are baked too. Their probes are sampled to two and a half times the error.
     pub volumes: BakeVolumes,
+    /// Side of a cell of volumes that nobody has placed [m]; `None` for 0.25 m, or as much more as keeps them to about
+    /// 32 768 probes.
+    pub volume_spacing: Option<f32>,
 }
 
 impl Default for BakeLightmaps {
@@ -171,6 +174,7 @@ impl Default for BakeLightmaps {
             threads: 0,
             format: LightmapFormat::default(),
             volumes: BakeVolumes::default(),
+            volume_spacing: None,
         }
     }
 }
@@ -185,20 +189,6 @@ impl BakeLightmaps {
     pub fn plan(&self, world: &mut World) -> Result<BakePlan, BakeError> {
         let scene = extract_scene(world, &self.scene).scene;
         BakePlan::for_scene(&scene, &self.bake_settings(), &(), &CancelToken::default())
-    }
-
-    /// What volumes are to be baked of a world, if any.
-    pub(super) fn volume_settings(&self, extraction: &Extraction) -> Option<VolumeSettings> {
-        let is_called_for = match self.volumes {
-            BakeVolumes::WhereCalledFor => extraction.has_movers || !extraction.volumes.is_empty(),
-            BakeVolumes::Always => true,
-            BakeVolumes::Never => false,
-        };
-        let boxes = match extraction.volumes.as_slice() {
-            [] => VolumeBoxes::default(),
-            placed => VolumeBoxes::Given(placed.to_vec()),
-        };
-        is_called_for.then(|| VolumeSettings { boxes, ..VolumeSettings::beside(&self.bake_settings()) })
     }
 
     /// The same in the baker's own words.

@@ -99,7 +99,7 @@ pub(super) fn start(world: &mut World) {
     let view = Arc::new(LiveView::new(viewpoint(world), asked.format, asked.view));
     let (sender, receiver) = channel();
     let baker = Arc::clone(&world.resource::<Kiln>().baker);
-    let volume_settings = asked.volume_settings(&extraction);
+    let volume_settings = extraction.volume_settings(&asked.bake_settings(), asked.volumes, asked.volume_spacing);
     let (scene, settings, their_view, their_cancel) =
         (extraction.scene, asked.bake_settings(), Arc::clone(&view), cancel.clone());
     let worker = std::thread::Builder::new().name("kiln".into()).spawn(move || {

@@ -17,10 +17,11 @@ mod warning;
 pub use texture::Unreadable;
 pub use warning::{ExtractionWarning, Unsimulated};
 
+use super::events::BakeVolumes;
 use super::markers::{LightBlocker, LightmapReceiver};
 use super::settings::SceneSettings;
 use crate::artefact::StableId;
-use crate::bake::VolumeBox;
+use crate::bake::{BakeSettings, VolumeBox, VolumeBoxes, VolumeSettings};
 use crate::plugin::stable_id;
 use crate::scene::{LightmapRequest, Scene, unique_ids};
 use bevy::camera::visibility::RenderLayers;
@@ -41,6 +42,27 @@ pub struct Extraction {
     /// Whether any mesh that is seen takes no part, as a thing that moves.
     pub has_movers: bool,
     seen: Seen,
+}
+
+impl Extraction {
+    /// What volumes are to be baked beside a lightmap, if any; with cells of this side [m] where none is placed.
+    pub fn volume_settings(
+        &self,
+        lightmap: &BakeSettings,
+        which: BakeVolumes,
+        spacing: Option<f32>,
+    ) -> Option<VolumeSettings> {
+        let is_called_for = match which {
+            BakeVolumes::WhereCalledFor => self.has_movers || !self.volumes.is_empty(),
+            BakeVolumes::Always => true,
+            BakeVolumes::Never => false,
+        };
+        let boxes = match self.volumes.as_slice() {
+            [] => VolumeBoxes::Automatic { spacing },
+            placed => VolumeBoxes::Given(placed.to_vec()),
+        };
+        is_called_for.then(|| VolumeSettings { boxes, ..VolumeSettings::beside(lightmap) })
+    }
 }
 
 /// Where assets that were read already lie in the scene; `None` for one that could not be read.
