@@ -58,9 +58,9 @@ pub mod trace;
 pub mod prelude {
     #[cfg(feature = "bake")]
     pub use crate::plugin::{
-        AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, BakeScope, BakeView, CancelBake,
-        ClearLightmaps, EmissiveUnit, LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver, RangeWindow,
-        SceneSettings,
+        AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakePlanned, BakeProgress, BakeScope,
+        BakeStatus, BakeView, CancelBake, ClearLightmaps, EmissiveUnit, KilnControl, LightBlocker, LightmapFormat,
+        LightmapLayout, LightmapReceiver, NextBake, PauseBake, PlanBake, RangeWindow, ResumeBake, SceneSettings,
     };
     pub use crate::plugin::{
         BakedFolder, BakedLightmaps, KilnId, KilnPlugin, KilnSystems, LightBaking, LightmapFiltering,

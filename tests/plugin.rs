@@ -164,7 +164,7 @@ fn a_trigger_becomes_lightmaps_on_entities() {
     assert_eq!(finished.entities, 7, "all but the lamp, which has no UV1");
     assert_eq!(finished.samples, 16 * finished.texels);
     assert!(app.world().resource::<Heard>().progress > 0);
-    assert!(finished.warnings.iter().any(|warning| warning.contains("light.light\" has no UV1")));
+    assert!(finished.warnings.iter().any(|warning| warning.sentence.contains("light.light\" has no UV1")));
     let shown = texels(app.world_mut());
     assert_eq!(shown.len(), 7);
     assert!(shown.values().all(|texels| texels.len() == 32 * 32 * 8 && texels.iter().any(|&byte| byte != 0)));

@@ -67,9 +67,11 @@ pub use display::{
 
 #[cfg(feature = "bake")]
 pub use baking::{
-    AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, BakeScope, BakeView, CancelBake,
-    ClearLightmaps, EmissiveUnit, Extraction, ExtractionWarning, LightBlocker, LightmapFormat, LightmapLayout,
-    LightmapReceiver, RangeWindow, SceneSettings, Unreadable, Unsimulated, extract_scene,
+    AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeId, BakeLightmaps, BakePlanned, BakeProgress, BakeScope,
+    BakeStatus, BakeView, CancelBake, ClearLightmaps, EmissiveUnit, Extraction, ExtractionWarning, KilnBusy,
+    KilnControl, KilnEnding, KilnOutcome, KilnWarning, KilnWork, LightBlocker, LightmapFormat, LightmapLayout,
+    LightmapReceiver, NextBake, PauseBake, PlanBake, RangeWindow, ResumeBake, RunningJob, SceneSettings, Unreadable,
+    Unsimulated, extract_scene,
 };
 
 use bevy::prelude::*;
