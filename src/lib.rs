@@ -59,8 +59,9 @@ pub mod prelude {
     #[cfg(feature = "bake")]
     pub use crate::plugin::{
         AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakePlanned, BakeProgress, BakeScope,
-        BakeStatus, BakeView, CancelBake, ClearLightmaps, EmissiveUnit, KilnControl, LightBlocker, LightmapFormat,
-        LightmapLayout, LightmapReceiver, NextBake, PauseBake, PlanBake, RangeWindow, ResumeBake, SceneSettings,
+        BakeStatus, BakeView, CancelBake, ClearLightmaps, EmissiveUnit, KilnControl, KilnShortcuts, LightBlocker,
+        LightmapFormat, LightmapLayout, LightmapReceiver, NextBake, PauseBake, PlanBake, RangeWindow, ResumeBake,
+        SceneSettings,
     };
     pub use crate::plugin::{
         BakedFolder, BakedLightmaps, KilnId, KilnPlugin, KilnSystems, LightBaking, LightmapFiltering,

@@ -1,6 +1,8 @@
 //! The plugin in a running app without a renderer: a bake from its trigger to its components, and back.
 #![cfg(feature = "cli")]
 
+#[path = "plugin/command.rs"]
+mod command;
 #[path = "plugin/environments.rs"]
 mod environments;
 #[path = "plugin/filtering.rs"]
@@ -19,6 +21,10 @@ mod materials;
 #[path = "plugin/meshes.rs"]
 mod meshes;
 
+#[cfg(feature = "remote")]
+#[path = "plugin/remote.rs"]
+mod remote;
+
 use bevy::ecs::system::RunSystemOnce;
 use bevy::gltf::Gltf;
 use bevy::light::RectLight;
@@ -27,7 +33,7 @@ use bevy::prelude::*;
 use bevy::world_serialization::WorldAssetRoot;
 use bevy_kiln::bake::bake_lightmap;
 use bevy_kiln::plugin::windowless::WindowlessPlugins;
-use bevy_kiln::plugin::{Extraction, extract_scene};
+use bevy_kiln::plugin::{BakeId, Extraction, KilnEnding, KilnWork, extract_scene};
 use bevy_kiln::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

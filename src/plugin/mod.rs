@@ -30,6 +30,14 @@
 //! # }
 //! ```
 //!
+//! [`BakePlanned`] answers [`PlanBake`]: what a bake would do and cost. [`PauseBake`] and [`ResumeBake`] hold it for a
+//! while, to the same bits. [`BakeStatus`] is what a panel shows of all that, and [`KilnControl`] asks from a system and
+//! hands back the number of the job. [`KilnShortcuts`] puts it on keys. With the feature `remote` and Bevy's
+//! `RemotePlugin`, another process calls `kiln.bake`, `kiln.plan`, `kiln.progress`, `kiln.pause`, `kiln.resume`,
+//! `kiln.cancel` and `kiln.clear`, with any of `error`, `spp`, `time` [s] and `density` and what else
+//! [`BakeLightmaps`] has; what it leaves out is as [`NextBake`] says, as for the keys. Bind it to the loopback address:
+//! whoever reaches the port can do anything with the app.
+//!
 //! Mark what shall receive a lightmap with [`LightmapReceiver`] and what only blocks and reflects with
 //! [`LightBlocker`], on the thing or on anything above it; without a receiver anywhere every mesh receives. What
 //! a folder of the `kiln` command holds goes on a scene as [`BakedLightmaps`] beside its root.
@@ -58,6 +66,10 @@ mod display;
 
 #[cfg(feature = "bake")]
 mod baking;
+#[cfg(feature = "remote")]
+mod remote;
+#[cfg(feature = "bake")]
+mod shortcuts;
 #[cfg(feature = "cli")]
 pub mod windowless;
 
@@ -73,6 +85,9 @@ pub use baking::{
     LightmapReceiver, NextBake, PauseBake, PlanBake, RangeWindow, ResumeBake, RunningJob, SceneSettings, Unreadable,
     Unsimulated, extract_scene,
 };
+
+#[cfg(feature = "bake")]
+pub use shortcuts::KilnShortcuts;
 
 use bevy::prelude::*;
 
@@ -95,5 +110,10 @@ impl Plugin for KilnPlugin {
         app.add_plugins(display::plugin);
         #[cfg(feature = "bake")]
         app.add_plugins(baking::plugin);
+    }
+
+    #[cfg(feature = "remote")]
+    fn finish(&self, app: &mut App) {
+        remote::finish(app);
     }
 }
