@@ -66,6 +66,8 @@ pub mod prelude {
     pub use crate::plugin::{
         BakedFolder, BakedLightmaps, KilnId, KilnPlugin, KilnSystems, LightBaking, LightmapFiltering,
     };
+    #[cfg(feature = "editor")]
+    pub use crate::plugin::{KilnPanel, KilnSelect};
 }
 
 /// The README's code, so that it stays true.

@@ -66,6 +66,8 @@ mod display;
 
 #[cfg(feature = "bake")]
 mod baking;
+#[cfg(feature = "editor")]
+mod panel;
 #[cfg(feature = "remote")]
 mod remote;
 #[cfg(feature = "bake")]
@@ -86,6 +88,8 @@ pub use baking::{
     Unsimulated, extract_scene,
 };
 
+#[cfg(feature = "editor")]
+pub use panel::{KilnButton, KilnPanel, KilnPanelRoot, KilnSelect, KilnSelection};
 #[cfg(feature = "bake")]
 pub use shortcuts::KilnShortcuts;
 

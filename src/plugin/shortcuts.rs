@@ -24,7 +24,7 @@ impl Plugin for KilnShortcuts {
     fn build(&self, app: &mut App) {
         app.add_systems(
             Update,
-            heed.run_if(resource_exists::<ButtonInput<KeyCode>>.and(resource_exists::<super::NextBake>)),
+            heed.run_if(resource_exists::<ButtonInput<KeyCode>>.and_then(resource_exists::<super::NextBake>)),
         );
     }
 }

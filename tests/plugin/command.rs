@@ -145,7 +145,8 @@ fn a_paused_bake_can_be_cancelled() {
 #[test]
 fn keys_bake_hold_stop_and_clear() {
     let mut app = lit_floor();
-    app.add_plugins(KilnShortcuts);
+    // Added as an app's builder does before it runs.
+    KilnShortcuts.build(&mut app);
     // Without a keyboard nothing happens, and nothing breaks.
     app.world_mut().remove_resource::<ButtonInput<KeyCode>>();
     app.update();

@@ -89,7 +89,7 @@ fn another_process_plans_bakes_and_clears_in_whatever_order_plugins_come() {
         let plan = served.wait_for(&planned["job"], "planned");
         assert!(plan["texels"].as_u64().unwrap() > 0 && plan["memory_bytes"].as_u64().unwrap() > 0, "{plan}");
         assert!(plan["predicted"].as_array().unwrap().iter().all(|price| price["seconds"].as_f64().is_some()));
-        let lights = |effect: &Value| effect["effect"] == "area lights" && effect["on"] == true;
+        let lights = |effect: &Value| effect["effect"] == "area-lights" && effect["on"] == true;
         assert!(plan["effects"].as_array().unwrap().iter().any(lights), "{plan}");
 
         let baking = served.result("kiln.bake", small_params());
