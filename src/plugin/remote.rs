@@ -14,9 +14,8 @@ mod params;
 
 use super::baking::{BakeLightmaps, BakeStatus, KilnBusy, KilnControl};
 use answer::{KILN_BUSY, NO_JOB, answer, progress_of};
-use bevy::ecs::system::SystemId;
 use bevy::prelude::*;
-use bevy::remote::{BrpError, BrpResult, RemoteMethodSystemId, RemoteMethods};
+use bevy::remote::{BrpError, BrpResult, RemoteInstantMethodSystemId, RemoteMethodSystemId, RemoteMethods};
 use params::{BakeParams, ProgressParams, read};
 use serde_json::Value;
 
@@ -26,7 +25,7 @@ pub(super) fn finish(app: &mut App) {
     if !world.contains_resource::<RemoteMethods>() {
         return;
     }
-    let methods: [(&str, SystemId<In<Option<Value>>, BrpResult>); 7] = [
+    let methods: [(&str, RemoteInstantMethodSystemId); 7] = [
         ("kiln.bake", world.register_system(bake)),
         ("kiln.plan", world.register_system(plan)),
         ("kiln.progress", world.register_system(progress)),
@@ -53,7 +52,7 @@ fn plan(In(params): In<Option<Value>>, mut kiln: KilnControl) -> BrpResult {
 
 /// The next bake, and over it what the request says.
 fn settings(params: Option<Value>, kiln: &mut KilnControl) -> BrpResult<BakeLightmaps> {
-    read::<BakeParams>(params)?.over(kiln.next().clone())
+    read::<BakeParams>(params)?.over(kiln.next_bake().clone())
 }
 
 fn progress(In(params): In<Option<Value>>, status: Res<BakeStatus>) -> BrpResult {

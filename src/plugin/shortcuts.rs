@@ -54,7 +54,7 @@ fn heed(keys: Res<ButtonInput<KeyCode>>, mut kiln: KilnControl) {
             kiln.cancel();
         }
         (false, false, None) => {
-            let next = kiln.next().clone();
+            let next = kiln.next_bake().clone();
             // Nothing runs, so nothing refuses it.
             let _ = kiln.bake(next);
         }

@@ -84,7 +84,7 @@ impl KilnControl<'_> {
     }
 
     /// What the next bake shall be like.
-    pub fn next(&mut self) -> &mut BakeLightmaps {
+    pub fn next_bake(&mut self) -> &mut BakeLightmaps {
         &mut self.next.0
     }
 

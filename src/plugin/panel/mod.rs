@@ -1,6 +1,6 @@
 //! A panel inside the running game: bake, plan, hold, stop, clear; what it would cost; how far it is; what was left out.
 //!
-//! Built of Bevy's own editor widgets (feathers). It is one more door: it asks [`KilnControl`], shows [`BakeStatus`] and
+//! Built of Bevy's own editor widgets (feathers). It is one more door: it asks [`KilnControl`], shows [`BakeStatus`](super::BakeStatus) and
 //! knows nothing else of the kiln. What it shows is put into words in `words`, laid out in `view`.
 
 mod select;
@@ -10,12 +10,13 @@ mod words;
 pub use select::{KilnSelect, KilnSelection};
 pub use view::KilnPanelRoot;
 
-use super::baking::{BakeGoal, BakeStatus, KilnControl};
+use super::baking::{BakeGoal, KilnControl};
 use bevy::feathers::dark_theme::create_dark_theme;
 use bevy::feathers::theme::UiTheme;
 use bevy::feathers::{FeathersCorePlugin, FeathersPlugins};
 use bevy::prelude::*;
 use bevy::ui_widgets::Activate;
+use bevy_scene::ScenePlugin;
 
 /// The panel, in the upper right corner of the window. Opt in; a shipped game has no use for it.
 ///
@@ -37,6 +38,9 @@ impl Plugin for KilnPanel {
     fn build(&self, app: &mut App) {
         if !app.is_plugin_added::<FeathersCorePlugin>() {
             app.add_plugins(FeathersPlugins).insert_resource(UiTheme(create_dark_theme()));
+        }
+        if !app.is_plugin_added::<ScenePlugin>() {
+            app.add_plugins(ScenePlugin);
         }
         app.init_resource::<KilnSelection>()
             .register_type::<KilnSelect>()
@@ -68,7 +72,7 @@ pub enum KilnButton {
 
 fn heed(activated: On<Activate>, buttons: Query<&KilnButton>, mut kiln: KilnControl, mut commands: Commands) {
     let Ok(button) = buttons.get(activated.entity) else { return };
-    let next = kiln.next().clone();
+    let next = kiln.next_bake().clone();
     match *button {
         // A click while another job runs does nothing; the panel says that one does.
         KilnButton::Bake => {
@@ -89,7 +93,7 @@ fn heed(activated: On<Activate>, buttons: Query<&KilnButton>, mut kiln: KilnCont
             kiln.cancel();
         }
         KilnButton::Clear => kiln.clear(),
-        KilnButton::Price(error) => kiln.next().goal = BakeGoal::Error(error),
+        KilnButton::Price(error) => kiln.next_bake().goal = BakeGoal::Error(error),
         KilnButton::Select(entity) => commands.trigger(KilnSelect { entity }),
     }
 }

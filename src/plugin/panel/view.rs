@@ -8,6 +8,7 @@ use bevy::feathers::controls::{ButtonVariant, FeathersButton};
 use bevy::feathers::display::{label, label_dim, label_small};
 use bevy::feathers::theme::ThemedText;
 use bevy::prelude::*;
+use bevy_scene::{CommandsSceneExt, bsn, bsn_list};
 
 const WIDTH: f32 = 300.0;
 /// Warnings that are listed; the rest is counted.
