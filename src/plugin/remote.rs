@@ -79,8 +79,8 @@ fn clear(In(_): In<Option<Value>>, mut kiln: KilnControl) -> BrpResult {
 
 fn busy(busy: KilnBusy) -> BrpError {
     let sentence = match busy {
-        KilnBusy::Baking(job) => format!("job {job}, a bake, is running; wait for it or call kiln.cancel first"),
-        KilnBusy::Planning(job) => format!("job {job}, a plan, is running; wait for it or call kiln.cancel first"),
+        KilnBusy::Baking(job) => format!("a bake is running (job {job}); wait for it or call kiln.cancel first"),
+        KilnBusy::Planning(job) => format!("a plan is running (job {job}); wait for it or call kiln.cancel first"),
     };
     BrpError { code: KILN_BUSY, message: sentence, data: None }
 }

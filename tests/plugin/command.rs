@@ -60,7 +60,7 @@ fn jobs_are_numbered_and_one_runs_at_a_time() {
     app.world_mut().flush();
     let refused = app.world().resource::<Heard>().failed[0].clone();
     assert_eq!((refused.job, refused.cancelled), (BakeId(2), false));
-    assert!(refused.reason.contains("job 1, a bake, is running"), "{refused:?}");
+    assert!(refused.reason.contains("a bake is running (job 1)"), "{refused:?}");
     app.world_mut().trigger(CancelBake);
     run_until(&mut app, "the end", |world| world.resource::<BakeStatus>().running().is_none());
     let ending = &status(&app).outcome(BakeId(1)).unwrap().ending;

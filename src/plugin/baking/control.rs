@@ -16,10 +16,10 @@ pub struct NextBake(pub BakeLightmaps);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum KilnBusy {
     /// Another one is not done.
-    #[error("job {0}, a bake, is running; wait for it or cancel it first (CancelBake)")]
+    #[error("a bake is running (job {0}); wait for it or cancel it first (CancelBake)")]
     Baking(BakeId),
     /// Another one is not done.
-    #[error("job {0}, a plan, is running; wait for it or cancel it first (CancelBake)")]
+    #[error("a plan is running (job {0}); wait for it or cancel it first (CancelBake)")]
     Planning(BakeId),
 }
 

@@ -41,7 +41,7 @@ pub(super) fn spawn(mut commands: Commands) {
     let root = commands.spawn((KilnPanelRoot, Name::new("kiln panel"), place)).id();
     let pane = commands.spawn_scene(pane()).insert(ChildOf(root)).id();
     let header = commands.spawn_scene(pane_header()).insert(ChildOf(pane)).id();
-    commands.spawn_scene(label("Kiln")).insert(ChildOf(header));
+    commands.spawn_scene(bsn! { Text("Kiln") ThemedText }).insert(ChildOf(header));
     let body = commands.spawn_scene(pane_body()).insert(ChildOf(pane)).id();
     for line in [
         &[(KilnButton::Bake, "Bake"), (KilnButton::Plan, "Plan"), (KilnButton::Clear, "Clear")][..],

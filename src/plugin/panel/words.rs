@@ -47,7 +47,9 @@ fn of_ending(ending: &KilnEnding) -> String {
 
 fn plan_line(plan: &BakePlan) -> String {
     let megabytes = plan.memory_bytes as f64 / 1e6;
-    format!("{} texels in {} textures\n{megabytes:.0} MB while it bakes", plan.texels, plan.pages)
+    let memory = if megabytes < 9.95 { format!("{megabytes:.1} MB") } else { format!("{megabytes:.0} MB") };
+    let textures = if plan.pages == 1 { "1 texture".to_owned() } else { format!("{} textures", plan.pages) };
+    format!("{} texels in {textures}\n{memory} while it bakes", plan.texels)
 }
 
 /// A price on its button; the one that the next bake has for its goal is marked.
