@@ -58,13 +58,16 @@ pub mod trace;
 pub mod prelude {
     #[cfg(feature = "bake")]
     pub use crate::plugin::{
-        AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, BakeScope, BakeView, BakeVolumes,
-        CancelBake, ClearLightmaps, EmissiveUnit, LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver,
-        ProbeVolume, RangeWindow, SceneSettings,
+        AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakePlanned, BakeProgress, BakeScope,
+        BakeStatus, BakeView, BakeVolumes, CancelBake, ClearLightmaps, EmissiveUnit, KilnControl, KilnShortcuts,
+        LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver, NextBake, PauseBake, PlanBake, ProbeVolume,
+        RangeWindow, ResumeBake, SceneSettings,
     };
     pub use crate::plugin::{
         BakedFolder, BakedLightmaps, BakedVolume, KilnId, KilnPlugin, KilnSystems, LightBaking, LightmapFiltering,
     };
+    #[cfg(feature = "editor")]
+    pub use crate::plugin::{KilnPanel, KilnSelect};
 }
 
 /// The README's code, so that it stays true.

@@ -1,6 +1,8 @@
 //! The plugin in a running app without a renderer: a bake from its trigger to its components, and back.
 #![cfg(feature = "cli")]
 
+#[path = "plugin/command.rs"]
+mod command;
 #[path = "plugin/environments.rs"]
 mod environments;
 #[path = "plugin/filtering.rs"]
@@ -21,6 +23,10 @@ mod meshes;
 #[path = "plugin/volumes.rs"]
 mod volumes;
 
+#[cfg(feature = "remote")]
+#[path = "plugin/remote.rs"]
+mod remote;
+
 use bevy::ecs::system::RunSystemOnce;
 use bevy::gltf::Gltf;
 use bevy::light::RectLight;
@@ -29,7 +35,7 @@ use bevy::prelude::*;
 use bevy::world_serialization::WorldAssetRoot;
 use bevy_kiln::bake::bake_lightmap;
 use bevy_kiln::plugin::windowless::WindowlessPlugins;
-use bevy_kiln::plugin::{Extraction, extract_scene};
+use bevy_kiln::plugin::{BakeId, Extraction, KilnEnding, KilnWork, extract_scene};
 use bevy_kiln::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -166,7 +172,7 @@ fn a_trigger_becomes_lightmaps_on_entities() {
     assert_eq!(finished.entities, 7, "all but the lamp, which has no UV1");
     assert_eq!(finished.samples, 16 * finished.texels);
     assert!(app.world().resource::<Heard>().progress > 0);
-    assert!(finished.warnings.iter().any(|warning| warning.contains("light.light\" has no UV1")));
+    assert!(finished.warnings.iter().any(|warning| warning.sentence.contains("light.light\" has no UV1")));
     let shown = texels(app.world_mut());
     assert_eq!(shown.len(), 7);
     assert!(shown.values().all(|texels| texels.len() == 32 * 32 * 8 && texels.iter().any(|&byte| byte != 0)));

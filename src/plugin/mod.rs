@@ -30,6 +30,14 @@
 //! # }
 //! ```
 //!
+//! [`BakePlanned`] answers [`PlanBake`]: what a bake would do and cost. [`PauseBake`] and [`ResumeBake`] hold it for a
+//! while, to the same bits. [`BakeStatus`] is what a panel shows of all that, and [`KilnControl`] asks from a system and
+//! hands back the number of the job. [`KilnShortcuts`] puts it on keys. With the feature `remote` and Bevy's
+//! `RemotePlugin`, another process calls `kiln.bake`, `kiln.plan`, `kiln.progress`, `kiln.pause`, `kiln.resume`,
+//! `kiln.cancel` and `kiln.clear`, with any of `error`, `spp`, `time` [s] and `density` and what else
+//! [`BakeLightmaps`] has; what it leaves out is as [`NextBake`] says, as for the keys. Bind it to the loopback address:
+//! whoever reaches the port can do anything with the app.
+//!
 //! What moves is lit by irradiance volumes ([`BakeVolumes`]): they come with the lightmaps where the scene has meshes that
 //! take no part in the bake. Boxes are found, or placed as [`ProbeVolume`].
 //!
@@ -61,6 +69,12 @@ mod display;
 
 #[cfg(feature = "bake")]
 mod baking;
+#[cfg(feature = "editor")]
+mod panel;
+#[cfg(feature = "remote")]
+mod remote;
+#[cfg(feature = "bake")]
+mod shortcuts;
 #[cfg(feature = "cli")]
 pub mod windowless;
 
@@ -71,10 +85,17 @@ pub use display::{
 
 #[cfg(feature = "bake")]
 pub use baking::{
-    AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakeProgress, BakeScope, BakeView, BakeVolumes,
-    CancelBake, ClearLightmaps, EmissiveUnit, Extraction, ExtractionWarning, LightBlocker, LightmapFormat,
-    LightmapLayout, LightmapReceiver, ProbeVolume, RangeWindow, SceneSettings, Unreadable, Unsimulated, extract_scene,
+    AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeId, BakeLightmaps, BakePlanned, BakeProgress, BakeScope,
+    BakeStatus, BakeView, BakeVolumes, CancelBake, ClearLightmaps, EmissiveUnit, Extraction, ExtractionWarning,
+    KilnBusy, KilnControl, KilnEnding, KilnOutcome, KilnWarning, KilnWork, LightBlocker, LightmapFormat,
+    LightmapLayout, LightmapReceiver, NextBake, PauseBake, PlanBake, ProbeVolume, RangeWindow, ResumeBake, RunningJob,
+    SceneSettings, Unreadable, Unsimulated, extract_scene,
 };
+
+#[cfg(feature = "editor")]
+pub use panel::{KilnButton, KilnPanel, KilnPanelRoot, KilnSelect, KilnSelection};
+#[cfg(feature = "bake")]
+pub use shortcuts::KilnShortcuts;
 
 use bevy::prelude::*;
 
@@ -97,5 +118,10 @@ impl Plugin for KilnPlugin {
         app.add_plugins(display::plugin);
         #[cfg(feature = "bake")]
         app.add_plugins(baking::plugin);
+    }
+
+    #[cfg(feature = "remote")]
+    fn finish(&self, app: &mut App) {
+        remote::finish(app);
     }
 }

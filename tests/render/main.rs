@@ -10,6 +10,8 @@ mod compare;
 mod example;
 mod live;
 mod mask;
+#[cfg(feature = "editor")]
+mod panel;
 mod parity;
 mod picture;
 mod pieces;

@@ -42,7 +42,7 @@ fn each_light_is_baked_as_it_is_shown() {
         show(&mut app);
         let shown = picture(&app, &stage);
         let done = bake(&mut app, direct());
-        assert_eq!(done.warnings, [""; 0], "{kind:?}");
+        assert_eq!(done.warnings, [], "{kind:?}");
         let baked = picture(&app, &stage);
         app.world_mut().trigger(ClearLightmaps);
         kind.remove(app.world_mut(), camera);

@@ -35,6 +35,11 @@ struct Heard(Option<BakeFinished>);
 
 /// An app with a black sky and no ambient light; `None` where there is no driver.
 pub fn app() -> Option<App> {
+    app_with(|_| {})
+}
+
+/// The same with more in it.
+pub fn app_with(more: impl FnOnce(&mut App)) -> Option<App> {
     let start = || {
         let mut app = App::new();
         let engine = DefaultPlugins
@@ -54,6 +59,7 @@ pub fn app() -> Option<App> {
         skip("there is no graphics driver; .ci/install-renderer.sh installs one");
         return None;
     };
+    more(&mut app);
     app.init_resource::<Screen>()
         .init_resource::<Heard>()
         .insert_resource(ClearColor(Color::BLACK))

@@ -3,6 +3,8 @@
 
 use super::extract::extract_scene;
 use super::settings::SceneSettings;
+use super::status::BakeId;
+use super::warning::KilnWarning;
 use crate::bake::{
     BakeError, BakePlan, BakeSettings, CancelToken, Denoise, Goal, LaterBounces, Layout, Lightmap, Progress, Stage,
     Volume,
@@ -216,7 +218,27 @@ impl BakeLightmaps {
     }
 }
 
-/// Stops the running bake. What was shown before it comes back, and [`BakeFailed`] says that it was cancelled.
+/// Asks what a bake of the world as it is at the end of the frame would do and cost. The game runs on; then
+/// [`BakePlanned`] is triggered. A plan is a job as a bake is: one runs at a time, and it can be paused and cancelled.
+#[derive(Event, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Event, Default, Debug, PartialEq, Clone)]
+pub struct PlanBake {
+    /// The bake.
+    pub bake: BakeLightmaps,
+}
+
+/// Holds the running bake or plan: its threads end what they are at, which takes a tile's time, and then use no processor.
+/// The result is the same to the bit; time that is asked for by [`BakeGoal::Time`] goes on.
+#[derive(Event, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Event, Default, Debug, PartialEq, Clone)]
+pub struct PauseBake;
+
+/// Lets it go on.
+#[derive(Event, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Event, Default, Debug, PartialEq, Clone)]
+pub struct ResumeBake;
+
+/// Stops the running bake or plan. What was shown before it comes back, and [`BakeFailed`] says that it was cancelled.
 #[derive(Event, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Event, Default, Debug, PartialEq, Clone)]
 pub struct CancelBake;
@@ -229,8 +251,10 @@ pub struct ClearLightmaps;
 
 /// How far the running bake is. Triggered at most once per frame, and only when there is news.
 #[derive(Event, Clone, Copy, Debug, PartialEq, Reflect)]
-#[reflect(Debug, PartialEq, Clone)]
+#[reflect(Event, Debug, PartialEq, Clone)]
 pub struct BakeProgress {
+    /// Which job.
+    pub job: BakeId,
     /// What it is doing.
     #[reflect(ignore, default = "first_stage")]
     pub stage: Stage,
@@ -243,16 +267,14 @@ pub struct BakeProgress {
 }
 
 impl BakeProgress {
+    pub(super) fn new(job: BakeId, progress: Progress) -> Self {
+        let Progress { stage, done, total, relative_stderr } = progress;
+        Self { job, stage, done, total, relative_stderr }
+    }
+
     /// Share of the stage that is done, in [0, 1].
     pub fn fraction(&self) -> f64 {
         if self.total == 0 { 0.0 } else { self.done as f64 / self.total as f64 }
-    }
-}
-
-impl From<Progress> for BakeProgress {
-    fn from(progress: Progress) -> Self {
-        let Progress { stage, done, total, relative_stderr } = progress;
-        Self { stage, done, total, relative_stderr }
     }
 }
 
@@ -261,6 +283,8 @@ impl From<Progress> for BakeProgress {
 #[reflect(from_reflect = false)]
 #[reflect(Debug, Clone)]
 pub struct BakeFinished {
+    /// Which job.
+    pub job: BakeId,
     /// Covered texels.
     pub texels: u64,
     /// Of these, those that were kept from the bake before, since no change reaches them.
@@ -271,8 +295,8 @@ pub struct BakeFinished {
     pub seconds: f64,
     /// How many entities got a lightmap.
     pub entities: usize,
-    /// What was left out or changed, one sentence each.
-    pub warnings: Vec<String>,
+    /// What was left out or changed.
+    pub warnings: Vec<KilnWarning>,
     /// The whole result with its report, to be written with `output::write_bake`.
     #[reflect(ignore)]
     pub lightmap: Arc<Lightmap>,
@@ -281,17 +305,32 @@ pub struct BakeFinished {
     pub volumes: Arc<Vec<Volume>>,
 }
 
-/// There are no new lightmaps; the world is as it was.
-#[derive(Event, Clone, Debug, PartialEq, Eq, Reflect)]
+/// A plan is made. The world is as it was.
+#[derive(Event, Clone, Debug, Reflect)]
 #[reflect(from_reflect = false)]
-#[reflect(Debug, PartialEq, Clone)]
+#[reflect(Debug, Clone)]
+pub struct BakePlanned {
+    /// Which job.
+    pub job: BakeId,
+    /// What the bake would do, its prices and its memory.
+    #[reflect(ignore)]
+    pub plan: Arc<BakePlan>,
+    /// What would be left out or changed.
+    pub warnings: Vec<KilnWarning>,
+}
+
+/// There are no new lightmaps, or no plan; the world is as it was.
+#[derive(Event, Clone, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Event, Debug, PartialEq, Clone)]
 pub struct BakeFailed {
+    /// Which job; one that was refused has a number as well.
+    pub job: BakeId,
     /// Why, as a sentence that says what to do.
     pub reason: String,
     /// Whether a person stopped it.
     pub cancelled: bool,
-    /// What had been left out by then, one sentence each.
-    pub warnings: Vec<String>,
+    /// What had been left out by then.
+    pub warnings: Vec<KilnWarning>,
 }
 
 fn first_stage() -> Stage {

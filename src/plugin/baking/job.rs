@@ -1,15 +1,23 @@
-//! A bake on threads of its own while the game runs on: asked for by triggers, started from a snapshot at the end
-//! of the frame, looked after once per frame. While it runs its texels are shown as they come; when it is stopped or
-//! fails, what was shown before comes back.
+//! A bake or a plan on threads of its own while the game runs on: asked for at any time, started from a snapshot at the
+//! end of the frame, looked after once per frame. While a bake runs its texels are shown as they come; when it is
+//! stopped or fails, what was shown before comes back.
 
+use super::control::KilnControl;
 use super::events::{
-    BakeFailed, BakeFinished, BakeLightmaps, BakeProgress, BakeScope, CancelBake, ClearLightmaps, LightmapFormat,
+    BakeFailed, BakeFinished, BakeLightmaps, BakePlanned, BakeProgress, BakeScope, BakeView, CancelBake,
+    ClearLightmaps, LightmapFormat, PauseBake, PlanBake, ResumeBake,
 };
-use super::extract::extract_scene;
+use super::extract::{Extraction, extract_scene};
 use super::live::LiveView;
+use super::status::{BakeId, BakeStatus, KilnEnding, KilnOutcome, KilnWork};
+use super::warning::{KilnWarning, Names};
 use super::write_back::{Finished, clear, show_texels, write_back};
 use crate::artefact::StableId;
-use crate::bake::{BakeError, Baker, CancelToken, Lightmap, Volume, VolumeBake, bake_lightmap, bake_volumes};
+use crate::bake::{
+    BakeError, BakePlan, BakeSettings, Baker, CancelToken, Lightmap, Volume, VolumeBake, VolumeSettings, bake_lightmap,
+    bake_volumes,
+};
+use crate::scene::Scene;
 use bevy::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -19,13 +27,43 @@ use std::time::Instant;
 /// What was asked for and is not done yet, and what the last bake left.
 #[derive(Resource, Default)]
 pub(super) struct Kiln {
-    asked: Option<BakeLightmaps>,
+    asked: Option<Request>,
     clear_asked: bool,
     job: Option<Job>,
     /// Remembers the last bake.
     baker: Arc<Mutex<Baker>>,
     /// The last bake that was finished and is on show.
     last: Option<OnShow>,
+}
+
+impl Kiln {
+    pub(super) fn ask(&mut self, request: Request) {
+        self.asked = Some(request);
+    }
+
+    pub(super) fn ask_to_clear(&mut self) {
+        self.clear_asked = true;
+    }
+
+    /// The switch of the job that is under way.
+    pub(super) fn token(&self) -> Option<&CancelToken> {
+        let asked = self.asked.as_ref().map(|request| &request.cancel);
+        asked.or(self.job.as_ref().map(|job| &job.request.cancel))
+    }
+}
+
+/// A job as it was asked for.
+pub(super) struct Request {
+    id: BakeId,
+    work: KilnWork,
+    settings: BakeLightmaps,
+    cancel: CancelToken,
+}
+
+impl Request {
+    pub(super) fn new(id: BakeId, work: KilnWork, settings: BakeLightmaps) -> Self {
+        Self { id, work, settings, cancel: CancelToken::default() }
+    }
 }
 
 /// A bake, and what it belongs on.
@@ -50,87 +88,132 @@ struct Target {
     format: LightmapFormat,
 }
 
-/// The running bake.
+/// What a job makes.
+enum Product {
+    Baked(Box<Baked>),
+    Plan(Arc<BakePlan>),
+}
+
+/// The running job.
 struct Job {
-    cancel: CancelToken,
+    request: Request,
     view: Arc<LiveView>,
     /// Whether anything of it has been shown.
     is_on_show: bool,
     /// In a mutex only because a resource must be shareable.
-    result: Mutex<Receiver<Result<Baked, BakeError>>>,
+    result: Mutex<Receiver<Result<Product, BakeError>>>,
     target: Arc<Target>,
-    warnings: Vec<String>,
+    names: Names,
+    warnings: Vec<KilnWarning>,
 }
 
 impl Drop for Job {
     fn drop(&mut self) {
-        self.cancel.cancel();
+        self.request.cancel.cancel();
     }
 }
 
-pub(super) fn ask(asked: On<BakeLightmaps>, mut kiln: ResMut<Kiln>, mut commands: Commands) {
-    if kiln.job.is_some() || kiln.asked.is_some() {
-        let reason = "a bake is running; wait for it or trigger CancelBake first".to_owned();
-        commands.trigger(BakeFailed { reason, cancelled: false, warnings: Vec::new() });
-        return;
-    }
-    kiln.asked = Some(asked.event().clone());
-}
-
-pub(super) fn cancel(_: On<CancelBake>, mut kiln: ResMut<Kiln>, mut commands: Commands) {
-    if kiln.asked.take().is_some() {
-        commands.trigger(failure(&BakeError::Cancelled, Vec::new()));
-    }
-    if let Some(job) = &kiln.job {
-        job.cancel.cancel();
+pub(super) fn ask(asked: On<BakeLightmaps>, mut kiln: KilnControl, mut commands: Commands) {
+    if let Err(busy) = kiln.bake(asked.event().clone()) {
+        commands.trigger(refusal(kiln.refused(), busy.to_string()));
     }
 }
 
-pub(super) fn ask_clear(_: On<ClearLightmaps>, mut kiln: ResMut<Kiln>) {
-    kiln.clear_asked = true;
+pub(super) fn ask_plan(asked: On<PlanBake>, mut kiln: KilnControl, mut commands: Commands) {
+    if let Err(busy) = kiln.plan(asked.bake.clone()) {
+        commands.trigger(refusal(kiln.refused(), busy.to_string()));
+    }
 }
 
-/// Takes the snapshot of a bake that was asked for and starts it.
+pub(super) fn cancel(_: On<CancelBake>, mut kiln: KilnControl) {
+    kiln.cancel();
+}
+
+pub(super) fn pause(_: On<PauseBake>, mut kiln: KilnControl) {
+    kiln.pause();
+}
+
+pub(super) fn resume(_: On<ResumeBake>, mut kiln: KilnControl) {
+    kiln.resume();
+}
+
+pub(super) fn ask_clear(_: On<ClearLightmaps>, mut kiln: KilnControl) {
+    kiln.clear();
+}
+
+/// Takes the snapshot of a job that was asked for and starts it.
 pub(super) fn start(world: &mut World) {
-    let Some(asked) = world.resource_mut::<Kiln>().asked.take() else { return };
-    let extraction = extract_scene(world, &asked.scene);
-    let warnings: Vec<String> = extraction.warnings.iter().map(ToString::to_string).collect();
-    let cancel = CancelToken::default();
-    let view = Arc::new(LiveView::new(viewpoint(world), asked.format, asked.view));
+    let Some(request) = world.resource_mut::<Kiln>().asked.take() else { return };
+    if request.cancel.is_cancelled() {
+        return fail(world, request.id, &BakeError::Cancelled, Vec::new());
+    }
+    let extraction = extract_scene(world, &request.settings.scene);
+    let names = Names::new(world, &extraction);
+    let view = match request.work {
+        KilnWork::Plan => BakeView::WhenDone,
+        KilnWork::Bake => request.settings.view,
+    };
+    let view = Arc::new(LiveView::new(viewpoint(world), request.settings.format, view));
     let (sender, receiver) = channel();
     let baker = Arc::clone(&world.resource::<Kiln>().baker);
-    let volume_settings = extraction.volume_settings(&asked.bake_settings(), asked.volumes, asked.volume_spacing);
-    let (scene, settings, their_view, their_cancel) =
-        (extraction.scene, asked.bake_settings(), Arc::clone(&view), cancel.clone());
+    let (work, scope, settings) = (request.work, request.settings.scope, request.settings.bake_settings());
+    let volumes = extraction.volume_settings(&settings, request.settings.volumes, request.settings.volume_spacing);
+    let Extraction { scene, warnings, entities, .. } = extraction;
+    let warnings = warnings.iter().map(|warning| names.warning(warning)).collect();
+    let (their_view, their_cancel) = (Arc::clone(&view), request.cancel.clone());
     let worker = std::thread::Builder::new().name("kiln".into()).spawn(move || {
-        let lightmap = match asked.scope {
-            BakeScope::Changes => {
-                let mut baker = baker.lock().unwrap_or_else(PoisonError::into_inner);
-                baker.bake(&scene, &settings, &*their_view, &their_cancel)
-            }
-            BakeScope::Everything => bake_lightmap(&scene, &settings, &*their_view, &their_cancel),
+        let result = match work {
+            KilnWork::Plan => BakePlan::for_scene(&scene, &settings, &*their_view, &their_cancel)
+                .map(|plan| Product::Plan(Arc::new(plan))),
+            KilnWork::Bake => bake(&baker, scope, &scene, &settings, &their_view, &their_cancel)
+                .and_then(|lightmap| with_volumes(lightmap, volumes, &scene, &their_view, &their_cancel)),
         };
-        let result = lightmap.and_then(|lightmap| {
-            let volumes = match &volume_settings {
-                Some(settings) => bake_volumes(&scene, settings, &*their_view, &their_cancel)?,
-                None => VolumeBake::default(),
-            };
-            Ok(Baked { lightmap, volumes })
-        });
         // Nobody listens any more once the app is gone.
         let _ = sender.send(result);
     });
     if let Err(error) = worker {
-        world.trigger(failure(&BakeError::Threads { reason: error.to_string() }, warnings));
-        return;
+        return fail(world, request.id, &BakeError::Threads { reason: error.to_string() }, warnings);
     }
-    let target = Target {
-        entities: extraction.entities,
-        ambient_baked: asked.scene.ambient == super::AmbientMode::Bake,
-        format: asked.format,
-    };
+    let target = Arc::new(Target {
+        entities,
+        ambient_baked: request.settings.scene.ambient == super::AmbientMode::Bake,
+        format: request.settings.format,
+    });
+    world.resource_mut::<BakeStatus>().started();
     world.resource_mut::<Kiln>().job =
-        Some(Job { cancel, view, is_on_show: false, result: Mutex::new(receiver), target: Arc::new(target), warnings });
+        Some(Job { request, view, is_on_show: false, result: Mutex::new(receiver), target, names, warnings });
+}
+
+fn bake(
+    baker: &Mutex<Baker>,
+    scope: BakeScope,
+    scene: &Scene,
+    settings: &BakeSettings,
+    view: &LiveView,
+    cancel: &CancelToken,
+) -> Result<Lightmap, BakeError> {
+    match scope {
+        BakeScope::Changes => {
+            let mut baker = baker.lock().unwrap_or_else(PoisonError::into_inner);
+            baker.bake(scene, settings, view, cancel)
+        }
+        BakeScope::Everything => bake_lightmap(scene, settings, view, cancel),
+    }
+}
+
+/// Bakes the volumes that go with a lightmap.
+fn with_volumes(
+    lightmap: Lightmap,
+    settings: Option<VolumeSettings>,
+    scene: &Scene,
+    view: &LiveView,
+    cancel: &CancelToken,
+) -> Result<Product, BakeError> {
+    let volumes = match settings {
+        Some(settings) => bake_volumes(scene, &settings, view, cancel)?,
+        None => VolumeBake::default(),
+    };
+    Ok(Product::Baked(Box::new(Baked { lightmap, volumes })))
 }
 
 /// Where the camera that draws to a window first is, if there is one.
@@ -146,7 +229,7 @@ pub(super) fn look_after(world: &mut World) {
         forget(world);
     }
     let Some(job) = &world.resource::<Kiln>().job else { return };
-    let news = job.view.progress();
+    let (id, news) = (job.request.id, job.view.progress());
     let result = match job.result.lock().unwrap_or_else(PoisonError::into_inner).try_recv() {
         Ok(result) => Some(result),
         Err(TryRecvError::Empty) => None,
@@ -155,24 +238,26 @@ pub(super) fn look_after(world: &mut World) {
             Some(Err(BakeError::Threads { reason }))
         }
     };
+    world.resource_mut::<BakeStatus>().heard(news);
     if let Some(news) = news {
-        world.trigger(BakeProgress::from(news));
+        world.trigger(BakeProgress::new(id, news));
     }
     let Some(result) = result else { return show_news(world) };
     let Some(mut job) = world.resource_mut::<Kiln>().job.take() else { return };
     let warnings = std::mem::take(&mut job.warnings);
     match result {
         // It may have been done just before it was stopped; stopped it is, all the same.
-        Ok(_) if job.cancel.is_cancelled() => give_up(world, &job, &BakeError::Cancelled, warnings),
+        Ok(_) if job.request.cancel.is_cancelled() => give_up(world, &job, &BakeError::Cancelled, warnings),
         Err(error) => give_up(world, &job, &error, warnings),
-        Ok(baked) => finish(world, &job, baked, warnings),
+        Ok(Product::Baked(baked)) => finish(world, &job, *baked, warnings),
+        Ok(Product::Plan(plan)) => hand_over(world, &job, plan, warnings),
     }
 }
 
 /// Shows what has come of the running bake since the last look.
 fn show_news(world: &mut World) {
     let mut kiln = world.resource_mut::<Kiln>();
-    let Some(job) = kiln.job.as_mut().filter(|job| !job.cancel.is_cancelled()) else { return };
+    let Some(job) = kiln.job.as_mut().filter(|job| !job.request.cancel.is_cancelled()) else { return };
     if let Some(lightmap) = job.view.coarse() {
         job.is_on_show = true;
         let target = Arc::clone(&job.target);
@@ -191,31 +276,33 @@ fn show(world: &mut World, on_show: &OnShow) -> super::write_back::Written {
     write_back(world, &Finished { lightmap, volumes, entities, ambient_baked: *ambient_baked, format: *format })
 }
 
-fn finish(world: &mut World, job: &Job, baked: Baked, mut warnings: Vec<String>) {
+fn finish(world: &mut World, job: &Job, baked: Baked, mut warnings: Vec<KilnWarning>) {
     let (lightmap, volumes) = (Arc::new(baked.lightmap), Arc::new(baked.volumes.volumes));
     let report = &lightmap.report;
     // What both say of the scene is said once.
     let of_volumes = baked.volumes.report.warnings.iter().filter(|warning| !report.warnings.contains(warning));
-    warnings.extend(report.warnings.iter().chain(of_volumes).map(ToString::to_string));
+    warnings.extend(report.warnings.iter().chain(of_volumes).map(|warning| job.names.warning(warning)));
     let (target, shown) = (Arc::clone(&job.target), Some(Arc::clone(&volumes)));
     let on_show = OnShow { lightmap: Arc::clone(&lightmap), volumes: shown, target };
     let written = show(world, &on_show);
     world.resource_mut::<Kiln>().last = Some(on_show);
-    warnings.extend(written.warnings);
-    world.trigger(BakeFinished {
-        texels: report.texels,
-        kept: report.kept.unwrap_or(0),
-        samples: report.samples,
-        seconds: report.wall_seconds,
-        entities: written.entities,
-        warnings,
-        lightmap: Arc::clone(&lightmap),
-        volumes,
-    });
+    warnings.extend(written.warnings.iter().map(|warning| job.names.warning(warning)));
+    let (texels, kept, samples) = (report.texels, report.kept.unwrap_or(0), report.samples);
+    let (seconds, entities) = (report.wall_seconds, written.entities);
+    let ending = KilnEnding::Baked { texels, kept, samples, seconds, entities };
+    remember(world, job.request.id, ending, warnings.clone());
+    let job = job.request.id;
+    world.trigger(BakeFinished { job, texels, kept, samples, seconds, entities, warnings, lightmap, volumes });
 }
 
-/// Ends a bake without a result: what was shown before it comes back.
-fn give_up(world: &mut World, job: &Job, error: &BakeError, warnings: Vec<String>) {
+fn hand_over(world: &mut World, job: &Job, plan: Arc<BakePlan>, mut warnings: Vec<KilnWarning>) {
+    warnings.extend(plan.warnings.iter().map(|warning| job.names.warning(warning)));
+    remember(world, job.request.id, KilnEnding::Planned(Arc::clone(&plan)), warnings.clone());
+    world.trigger(BakePlanned { job: job.request.id, plan, warnings });
+}
+
+/// Ends a job without a result: what was shown before it comes back.
+fn give_up(world: &mut World, job: &Job, error: &BakeError, warnings: Vec<KilnWarning>) {
     if job.is_on_show {
         match world.resource::<Kiln>().last.clone() {
             Some(last) => {
@@ -224,7 +311,22 @@ fn give_up(world: &mut World, job: &Job, error: &BakeError, warnings: Vec<String
             None => clear(world),
         }
     }
-    world.trigger(failure(error, warnings));
+    fail(world, job.request.id, error, warnings);
+}
+
+fn fail(world: &mut World, job: BakeId, error: &BakeError, warnings: Vec<KilnWarning>) {
+    let (reason, cancelled) = (error.to_string(), *error == BakeError::Cancelled);
+    let ending = KilnEnding::Failed { reason: reason.clone(), cancelled };
+    remember(world, job, ending, warnings.clone());
+    world.trigger(BakeFailed { job, reason, cancelled, warnings });
+}
+
+fn remember(world: &mut World, id: BakeId, ending: KilnEnding, warnings: Vec<KilnWarning>) {
+    world.resource_mut::<BakeStatus>().ended(KilnOutcome { id, ending, warnings });
+}
+
+fn refusal(job: BakeId, reason: String) -> BakeFailed {
+    BakeFailed { job, reason, cancelled: false, warnings: Vec::new() }
 }
 
 /// Takes off what is shown, and forgets it.
@@ -238,8 +340,4 @@ fn forget(world: &mut World) {
     } else if let Ok(mut baker) = kiln.baker.try_lock() {
         baker.forget();
     }
-}
-
-fn failure(error: &BakeError, warnings: Vec<String>) -> BakeFailed {
-    BakeFailed { reason: error.to_string(), cancelled: *error == BakeError::Cancelled, warnings }
 }

@@ -311,7 +311,7 @@ mod tests {
     fn show(world: &mut World, entity: Entity, lightmap: &bake::Lightmap) -> Written {
         let entities = BTreeMap::from([(StableId::new("a"), entity)]);
         let format = LightmapFormat::Rgba16f;
-        write_back(world, &Finished { lightmap, entities: &entities, ambient_baked: false, format })
+        write_back(world, &Finished { lightmap, volumes: None, entities: &entities, ambient_baked: false, format })
     }
 
     #[test]
