@@ -62,6 +62,8 @@ impl PluginGroup for WindowlessPlugins {
             .add(bevy::render::RenderPlugin { render_creation: no_gpu(), ..default() })
             .add(ImagePlugin::default())
             .add(bevy::mesh::MeshPlugin)
+            // Lights draw theirs where a game has them.
+            .add(bevy::gizmos::GizmoPlugin)
             .add(bevy::camera::CameraPlugin)
             .add(bevy::light::LightPlugin)
             .add(GltfPlugin::default())
