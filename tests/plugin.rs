@@ -12,6 +12,8 @@ mod filtering;
 mod glb;
 #[path = "plugin/left_out.rs"]
 mod left_out;
+#[path = "plugin/light_baking.rs"]
+mod light_baking;
 #[path = "plugin/lights.rs"]
 mod lights;
 #[path = "plugin/live.rs"]
@@ -29,6 +31,7 @@ mod remote;
 
 use bevy::ecs::system::RunSystemOnce;
 use bevy::gltf::Gltf;
+use bevy::image::ImageSampler;
 use bevy::light::RectLight;
 use bevy::pbr::Lightmap;
 use bevy::prelude::*;
@@ -382,6 +385,15 @@ fn the_game_and_the_command_line_bake_the_same_bits_and_a_shipped_game_shows_the
         world.resource::<AssetServer>().is_loaded_with_dependencies(&baked) && count::<Lightmap>(world) == 7
     });
     assert_eq!(texels(shipped.world_mut()), baked_in_game);
+    // KTX2 holds no sampler, and a game of blocks may have made `nearest` its default.
+    let world = shipped.world_mut();
+    let mut shown = world.query::<&Lightmap>();
+    let images = world.resource::<Assets<Image>>();
+    for lightmap in shown.iter(world) {
+        let ImageSampler::Descriptor(sampler) = &images.get(&lightmap.image).unwrap().sampler else { panic!() };
+        let filters = [sampler.mag_filter, sampler.min_filter].map(|filter| format!("{filter:?}"));
+        assert_eq!(filters, ["Linear", "Linear"]);
+    }
 
     let world = shipped.world_mut();
     world.entity_mut(root).remove::<BakedLightmaps>();

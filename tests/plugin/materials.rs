@@ -195,12 +195,30 @@ fn normal_maps_say_how_they_are_stored() {
     assert_eq!(map(TextureFormat::Rgba8Unorm, three(), true), NormalEncoding::DirectX);
     assert_eq!(map(TextureFormat::Rg8Unorm, vec![128, 128], false), NormalEncoding::TwoChannel);
     assert_eq!(map(TextureFormat::Rg8Unorm, vec![128, 128], true), NormalEncoding::TwoChannelDirectX);
+    assert_eq!(map(TextureFormat::Bc5RgUnorm, vec![128; 16], false), NormalEncoding::TwoChannel);
+}
+
+#[test]
+fn compressed_pictures_are_unpacked_at_their_finest() {
+    let extraction = extract(|images| {
+        // Blocks of one colour, 5:6:5 bits: two of the picture itself, one of its mipmap.
+        let colour = |low: u8, high: u8| [low, high, low, high, 0, 0, 0, 0];
+        let bytes = [colour(0, 0xf8), colour(0x1f, 0), colour(0xe0, 0x07)].concat();
+        let mut compressed = picture(TextureFormat::Bc1RgbaUnormSrgb, 8, bytes);
+        compressed.texture_descriptor.mip_level_count = 2;
+        StandardMaterial { base_color_texture: Some(images.add(compressed)), ..default() }
+    });
+    assert!(one(&extraction).base_colour_texture.is_some());
+    let texture = &extraction.scene.textures[0];
+    let Texels::Srgb8(texels) = &texture.texels else { panic!("{texture:?}") };
+    assert_eq!((texture.width, texture.height), (8, 1));
+    assert_eq!(**texels, [[[255, 0, 0, 255]; 4], [[0, 0, 255, 255]; 4]].concat());
 }
 
 #[test]
 fn a_picture_that_cannot_be_read_is_named_once_and_left_out() {
     let extraction = extract(|images| {
-        let compressed = images.add(picture(TextureFormat::Bc7RgbaUnormSrgb, 4, vec![0; 16]));
+        let compressed = images.add(picture(TextureFormat::Etc2Rgba8UnormSrgb, 4, vec![0; 16]));
         let gone = Image { data: None, ..default() };
         StandardMaterial {
             base_color_texture: Some(compressed.clone()),
@@ -213,7 +231,7 @@ fn a_picture_that_cannot_be_read_is_named_once_and_left_out() {
     let warnings: Vec<String> = extraction.warnings.iter().map(ToString::to_string).collect();
     assert_eq!(warnings.len(), 3, "{warnings:?}");
     for sentence in [
-        "the base colour texture of \"cube\" is Bc7RgbaUnormSrgb, which cannot be read",
+        "the base colour texture of \"cube\" is Etc2Rgba8UnormSrgb, which cannot be read; give it uncompressed, or as BC1 to BC7",
         "the normal map of \"cube\" is in the render world only",
         "the metallic and roughness texture of \"cube\" is not loaded",
     ] {

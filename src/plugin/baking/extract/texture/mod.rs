@@ -1,8 +1,10 @@
-//! `Image` into textures: each that a material refers to, once. What is compressed or no longer in main memory
-//! becomes a warning, and the material does without it.
+//! `Image` into textures: each that a material refers to, once. What is compressed in a way that no decoder reads, or no
+//! longer in main memory, becomes a warning, and the material does without it.
 
+mod blocks;
 mod formats;
 
+use blocks::Blocks;
 pub use formats::Unreadable;
 use formats::{decode, texel_size};
 
@@ -51,7 +53,7 @@ pub(super) fn place(world: &World, slot: Slot, out: &mut Extraction) -> Option<T
 pub(super) fn has_two_channels(world: &World, handle: &Handle<Image>) -> bool {
     let image = world.get_resource::<Assets<Image>>().and_then(|images| images.get(handle));
     let format = image.map(|image| image.texture_descriptor.format);
-    matches!(format, Some(TextureFormat::Rg8Unorm | TextureFormat::Rg16Unorm))
+    matches!(format, Some(TextureFormat::Rg8Unorm | TextureFormat::Rg16Unorm | TextureFormat::Bc5RgUnorm))
 }
 
 fn read(world: &World, slot: Slot, handle: &Handle<Image>) -> Result<Texture, Unreadable> {
@@ -94,11 +96,14 @@ pub(super) fn name(handle: &Handle<Image>) -> Option<String> {
 /// The finest texels of one layer of an image.
 pub(super) fn layer(image: &Image, layer: usize) -> Result<Texels, Unreadable> {
     let descriptor = &image.texture_descriptor;
-    let texel = texel_size(descriptor.format)?;
+    let blocks = Blocks::of(descriptor.format);
+    let texel = if blocks.is_none() { texel_size(descriptor.format)? } else { 0 };
     let data = image.data.as_ref().ok_or(Unreadable::RenderWorldOnly)?;
+    let size_of =
+        |level: u32| [descriptor.size.width, descriptor.size.height].map(|length| (length >> level).max(1) as usize);
     let bytes_of = |level: u32| {
-        let side = |length: u32| (length >> level).max(1) as usize;
-        side(descriptor.size.width) * side(descriptor.size.height) * texel
+        let [width, height] = size_of(level);
+        blocks.map_or(width * height * texel, |blocks| blocks.bytes([width, height]))
     };
     let finest = bytes_of(0);
     let stride = match image.data_order {
@@ -106,7 +111,7 @@ pub(super) fn layer(image: &Image, layer: usize) -> Result<Texels, Unreadable> {
         TextureDataOrder::MipMajor => finest,
     };
     let bytes = data.get(layer * stride..).and_then(|rest| rest.get(..finest)).ok_or(Unreadable::TooShort)?;
-    decode(descriptor.format, bytes)
+    blocks.map_or_else(|| decode(descriptor.format, bytes), |blocks| Ok(blocks.decode(size_of(0), bytes)))
 }
 
 fn wrap(mode: ImageAddressMode) -> Wrap {
