@@ -14,6 +14,7 @@ mod skies;
 #[path = "cli/study.rs"]
 mod study;
 
+use bevy_kiln::artefact::Manifest;
 use glb::Glb;
 use serde_json::Value;
 use std::path::{Path, PathBuf};

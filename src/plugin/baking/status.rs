@@ -171,11 +171,14 @@ impl BakeStatus {
         let Some(running) = &mut self.running else { return };
         running.seconds = running.watch.elapsed(Instant::now()).as_secs_f64();
         let Some(news) = news else { return };
+        if news.stage != running.stage {
+            running.gather_began = None;
+        }
         running.stage = news.stage;
         running.fraction = if news.total == 0 { 0.0 } else { news.done as f64 / news.total as f64 };
         running.relative_stderr = news.relative_stderr.or(running.relative_stderr);
         running.seconds_left = None;
-        if news.stage == Stage::Gather {
+        if matches!(news.stage, Stage::Gather | Stage::Probes) {
             let traced = running.seconds - *running.gather_began.get_or_insert(running.seconds);
             if running.fraction >= ENOUGH_TO_TELL {
                 running.seconds_left = Some(traced * (1.0 - running.fraction) / running.fraction);
