@@ -133,7 +133,7 @@ fn volumes_are_written_beside_the_lightmap() {
     let header = ktx2::Reader::new(&file[..]).unwrap().header();
     assert_eq!([header.pixel_width, header.pixel_height, header.pixel_depth], [12, 22, 36]);
     let refused = run(&[&common[..], &["--volumes=-1"]].concat());
-    assert_fails(&refused, 1, "a spacing of -1 m cannot be");
+    assert_fails(&refused, 2, "a spacing of -1 m cannot be");
 }
 
 #[test]

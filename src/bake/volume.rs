@@ -238,7 +238,12 @@ impl VolumeSettings {
         Self { transport: lightmap.transport, goal, threads: lightmap.threads, ..Self::default() }
     }
 
-    fn validate(&self) -> Result<(), BakeError> {
+    /// Refuses what cannot be met.
+    ///
+    /// # Errors
+    ///
+    /// [`BakeError::Settings`].
+    pub fn validate(&self) -> Result<(), BakeError> {
         let refuse = |reason: String| Err(BakeError::Settings { setting: "volume", reason });
         self.goal.validate()?;
         if !(self.density > 0.0 && self.density.is_finite()) {

@@ -6,11 +6,12 @@ use crate::progress::Show;
 use crate::scene;
 use crate::talk::{Talk, warn};
 use bevy_kiln::bake::{
-    BakePlan, BakeReport, BakeSettings, CancelToken, Denoise, Jump, RelativeError, VolumeBake, bake_lightmap,
-    bake_volumes,
+    BakePlan, BakeReport, BakeSettings, CancelToken, Denoise, Jump, RelativeError, VolumeBake, VolumeSettings,
+    bake_lightmap, bake_volumes,
 };
 use bevy_kiln::output::{ReferenceError, WrittenLightmap, compare_with_reference, write_bake};
 use bevy_kiln::plugin::{BakeVolumes, Extraction};
+use bevy_kiln::scene::Scene;
 use bevy_kiln::trace::Effect;
 use serde_json::json;
 
@@ -25,6 +26,7 @@ pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> 
     let extraction = scene::open(&args.scene, cancel)?;
     let mut warnings: Vec<String> = extraction.warnings.iter().map(ToString::to_string).collect();
     warn(&warnings);
+    let volume_settings = volume_settings(args, &extraction, &settings)?;
     let plan = BakePlan::for_scene(&extraction.scene, &settings, &(), cancel)?;
     talk.plan(&plan);
     warn(&plan.warnings.iter().map(ToString::to_string).collect::<Vec<_>>());
@@ -32,7 +34,10 @@ pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> 
     let result = bake_lightmap(&extraction.scene, &settings, &show, cancel);
     show.end();
     let lightmap = result?;
-    let volumes = volumes(args, &extraction, &settings, cancel)?;
+    let volumes = match volume_settings {
+        Some(settings) => volumes(&extraction.scene, &settings, cancel)?,
+        None => VolumeBake::default(),
+    };
     if cancel.is_cancelled() {
         return Err(Failure::Stopped);
     }
@@ -72,19 +77,22 @@ pub(crate) fn run(args: &BakeArgs, cancel: &CancelToken) -> Result<(), Failure> 
     Ok(())
 }
 
-/// The irradiance volumes beside the lightmap.
-fn volumes(
+/// What volumes are asked for, if any; refused before anything is traced if they cannot be.
+fn volume_settings(
     args: &BakeArgs,
     extraction: &Extraction,
     settings: &BakeSettings,
-    cancel: &CancelToken,
-) -> Result<VolumeBake, Failure> {
+) -> Result<Option<VolumeSettings>, Failure> {
     let which = if args.volumes.is_some() { BakeVolumes::Always } else { BakeVolumes::WhereCalledFor };
-    let Some(settings) = extraction.volume_settings(settings, which, args.volumes.flatten()) else {
-        return Ok(VolumeBake::default());
-    };
+    let settings = extraction.volume_settings(settings, which, args.volumes.flatten());
+    settings.as_ref().map_or(Ok(()), VolumeSettings::validate)?;
+    Ok(settings)
+}
+
+/// The irradiance volumes beside the lightmap.
+fn volumes(scene: &Scene, settings: &VolumeSettings, cancel: &CancelToken) -> Result<VolumeBake, Failure> {
     let show = Show::new();
-    let result = bake_volumes(&extraction.scene, &settings, &show, cancel);
+    let result = bake_volumes(scene, settings, &show, cancel);
     show.end();
     Ok(result?)
 }

@@ -165,7 +165,11 @@ pub(super) fn start(world: &mut World) {
         let result = match work {
             KilnWork::Plan => BakePlan::for_scene(&scene, &settings, &*their_view, &their_cancel)
                 .map(|plan| Product::Plan(Arc::new(plan))),
-            KilnWork::Bake => bake(&baker, scope, &scene, &settings, &their_view, &their_cancel)
+            // What cannot be is refused before anything is traced.
+            KilnWork::Bake => volumes
+                .as_ref()
+                .map_or(Ok(()), VolumeSettings::validate)
+                .and_then(|()| bake(&baker, scope, &scene, &settings, &their_view, &their_cancel))
                 .and_then(|lightmap| with_volumes(lightmap, volumes, &scene, &their_view, &their_cancel)),
         };
         // Nobody listens any more once the app is gone.
