@@ -123,7 +123,6 @@ fn a_mode_that_changes_holds_from_the_next_bake_on() {
         (LightBaking::Baked, true, 0.0),
         (LightBaking::MixedIndirect, false, power),
         (LightBaking::MixedDirect, true, 0.0),
-        (LightBaking::RealTime, false, power),
         (LightBaking::Baked, true, 0.0),
     ];
     for (count, (mode, is_in_lightmap, left)) in steps.into_iter().enumerate() {

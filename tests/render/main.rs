@@ -3,7 +3,6 @@
 //! machine (`CI=true`) they fail.
 #![cfg(all(feature = "cli", feature = "window"))]
 
-#[allow(dead_code, reason = "one part of it is used")]
 #[path = "../common/mod.rs"]
 mod common;
 mod compare;
