@@ -25,6 +25,8 @@ const STAGE: Stage = Stage {
     ev100: 9.7,
     size: [640; 2],
     window: [900; 2],
+    keys: "",
+    besides: |_| {},
 };
 
 fn main() -> AppExit {

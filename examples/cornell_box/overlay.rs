@@ -1,5 +1,6 @@
 //! Words on the screen: the keys, and where things stand.
 
+use crate::args::Args;
 use crate::bake::Status;
 use bevy::prelude::*;
 
@@ -17,7 +18,7 @@ pub fn plugin(app: &mut App) {
     app.add_systems(Startup, spawn).add_systems(Update, (toggle, update.run_if(resource_changed::<Status>)));
 }
 
-fn spawn(mut commands: Commands) {
+fn spawn(args: Res<Args>, mut commands: Commands) {
     let column = Node {
         position_type: PositionType::Absolute,
         left: px(12),
@@ -31,7 +32,10 @@ fn spawn(mut commands: Commands) {
     commands.spawn((
         Overlay,
         column,
-        children![(StatusLine, Text::default(), small.clone()), (Text::new(HELP), small)],
+        children![
+            (StatusLine, Text::default(), small.clone()),
+            (Text::new(format!("{}{HELP}", args.stage.keys)), small)
+        ],
     ));
 }
 

@@ -32,6 +32,7 @@ pub fn run(stage: Stage) -> AppExit {
         .set(RenderPlugin { synchronous_pipeline_compilation: args.screenshot.is_some(), ..default() });
     let mut app = App::new();
     app.add_plugins((engine, KilnPlugin, room::plugin, bake::plugin, folder::plugin, overlay::plugin));
+    app.add_plugins(stage.besides);
     if args.screenshot.is_some() {
         app.add_plugins(shoot::plugin);
     }

@@ -1,5 +1,6 @@
 //! What one example shows. The examples that open a scene, bake it and look on differ in this alone.
 
+use bevy::app::App;
 use bevy::color::Color;
 
 /// A scene and how it is looked at.
@@ -21,4 +22,8 @@ pub struct Stage {
     pub size: [u32; 2],
     /// Width and height of the window that a person looks at [pixels].
     pub window: [u32; 2],
+    /// Keys of its own, as the screen explains them.
+    pub keys: &'static str,
+    /// What is in the app besides.
+    pub besides: fn(&mut App),
 }

@@ -37,6 +37,8 @@ const STAGE: Stage = Stage {
     ev100: 9.0,
     size: [1280, 720],
     window: [1280, 720],
+    keys: "",
+    besides: |_| {},
 };
 
 fn main() -> AppExit {
