@@ -1,6 +1,8 @@
 //! What a request says, and what it gets wrong.
 
-use crate::plugin::{BakeGoal, BakeId, BakeLightmaps, BakeScope, BakeView, LightmapFormat, LightmapLayout};
+use crate::plugin::{
+    BakeGoal, BakeId, BakeLightmaps, BakeScope, BakeView, BakeVolumes, LightmapFormat, LightmapLayout,
+};
 use bevy::remote::error_codes::INVALID_PARAMS;
 use bevy::remote::{BrpError, BrpResult};
 use serde::Deserialize;
@@ -30,6 +32,9 @@ pub(super) struct BakeParams {
     scope: Option<Scope>,
     view: Option<View>,
     format: Option<Format>,
+    volumes: Option<Volumes>,
+    /// Side of a cell of volumes that nobody has placed [m].
+    volume_spacing: Option<f32>,
 }
 
 #[derive(Deserialize, Clone, Copy, Debug, PartialEq)]
@@ -51,6 +56,14 @@ enum View {
 enum Format {
     Rgb9e5,
     Rgba16f,
+}
+
+#[derive(Deserialize, Clone, Copy, Debug, PartialEq)]
+#[serde(rename_all = "snake_case")]
+enum Volumes {
+    WhereCalledFor,
+    Always,
+    Never,
 }
 
 impl BakeParams {
@@ -79,6 +92,11 @@ impl BakeParams {
             Format::Rgb9e5 => LightmapFormat::Rgb9e5,
             Format::Rgba16f => LightmapFormat::Rgba16f,
         });
+        let volumes = self.volumes.map(|volumes| match volumes {
+            Volumes::WhereCalledFor => BakeVolumes::WhereCalledFor,
+            Volumes::Always => BakeVolumes::Always,
+            Volumes::Never => BakeVolumes::Never,
+        });
         Ok(BakeLightmaps {
             goal,
             density: self.density.unwrap_or(rest.density),
@@ -91,6 +109,8 @@ impl BakeParams {
             scope: scope.unwrap_or(rest.scope),
             view: view.unwrap_or(rest.view),
             format: format.unwrap_or(rest.format),
+            volumes: volumes.unwrap_or(rest.volumes),
+            volume_spacing: self.volume_spacing.or(rest.volume_spacing),
             ..rest
         })
     }
@@ -146,6 +166,8 @@ mod tests {
             ..rest
         };
         assert_eq!(asked.unwrap(), expected);
+        let volumes = bake(json!({"volumes": "never", "volume_spacing": 0.5})).unwrap();
+        assert_eq!((volumes.volumes, volumes.volume_spacing), (BakeVolumes::Never, Some(0.5)));
         assert_eq!(bake(json!({"time": 1.5})).unwrap().goal, BakeGoal::Time(Duration::from_millis(1500)));
         assert_eq!(bake(json!({"error": 0.1})).unwrap().goal, BakeGoal::Error(0.1));
     }
