@@ -20,6 +20,8 @@ mod grid;
 mod measure;
 mod nesting;
 mod rooms;
+mod settings;
+mod site;
 mod stand;
 mod surfaces;
 
@@ -29,91 +31,20 @@ use super::report::Intervals;
 use super::tiles::{ErrorTarget, LEAST_PATHS, Until};
 use super::unwrap::LaidOut;
 use super::workers::{Work, Workers};
-use super::{
-    BakeError, BakeReport, BakeSettings, BakeWarning, CancelToken, DARK, Goal, LaterBounces, Progress, ProgressSink,
-    Stage,
-};
+use super::{BakeError, BakeReport, BakeWarning, CancelToken, DARK, Goal, Progress, ProgressSink, Stage};
 use crate::artefact::StableId;
-use crate::math::{AmbientCube, FACES, luminance};
+use crate::math::{FACES, luminance};
 use crate::scene::Scene;
-use crate::trace::{Compiled, Tracer, Transport};
-use fill::fill;
+use crate::trace::{Compiled, Tracer};
 use glam::{Quat, UVec3, Vec3};
-use grid::Grid;
 use measure::{Moments, Probe};
-use rooms::Rooms;
-use stand::Stand;
-use std::num::NonZeroUsize;
+use site::{Site, survey};
 use std::time::{Duration, Instant};
+
+pub use settings::{VolumeBox, VolumeBoxes, VolumeSettings};
 
 /// Volumes that Bevy's shader reads at once: those whose middle is nearest to the camera.
 pub const MOST_VOLUMES: usize = 8;
-
-/// What volumes are asked for.
-#[derive(Clone, Debug, PartialEq)]
-pub struct VolumeSettings {
-    /// How light is followed.
-    pub transport: Transport,
-    /// When a probe has been sampled enough: by its error, that of a face of its cube as the root of the mean square
-    /// over all six, or by its paths. [`Goal::Time`] is refused.
-    pub goal: Goal,
-    /// How light is found that has met more than one surface.
-    pub later_bounces: LaterBounces,
-    /// Texels per metre of the coarse lightmap at which paths end where [`LaterBounces::Reused`] asks for it; fewer in a
-    /// large scene.
-    pub density: f32,
-    /// Where they are.
-    pub boxes: VolumeBoxes,
-    /// Threads that trace; `None` for all cores.
-    pub threads: Option<NonZeroUsize>,
-}
-
-impl Default for VolumeSettings {
-    fn default() -> Self {
-        Self {
-            transport: Transport::default(),
-            goal: Goal::Error(0.05),
-            later_bounces: LaterBounces::Reused,
-            density: 4.0,
-            boxes: VolumeBoxes::default(),
-            threads: None,
-        }
-    }
-}
-
-/// Where volumes are.
-#[derive(Clone, Debug, PartialEq)]
-pub enum VolumeBoxes {
-    /// Around all that receives lightmaps, and three metres up at least; cut into up to [`MOST_VOLUMES`] where walls
-    /// part rooms.
-    Automatic {
-        /// Side of a cell [m]; `None` for 0.25 m, or as much more as keeps it to about 32 768 probes.
-        spacing: Option<f32>,
-    },
-    /// Where somebody put them. Of those that overlap the smallest counts.
-    Given(Vec<VolumeBox>),
-}
-
-impl Default for VolumeBoxes {
-    fn default() -> Self {
-        Self::Automatic { spacing: None }
-    }
-}
-
-/// The box of a volume.
-#[derive(Clone, Debug, PartialEq)]
-pub struct VolumeBox {
-    /// Whose it is.
-    pub id: StableId,
-    /// Its middle [m].
-    pub centre: Vec3,
-    /// From its own axes to the world's.
-    pub rotation: Quat,
-    /// Its sides [m].
-    pub size: Vec3,
-    /// Side of a cell [m]; `None` for a 32nd of the longest side of the box, and 0.25 m at least.
-    pub spacing: Option<f32>,
-}
 
 /// A baked volume.
 #[derive(Clone, Debug, PartialEq)]
@@ -224,82 +155,6 @@ pub fn bake_volumes(
     Ok(VolumeBake { volumes, report: BakeReport { intervals, ..report }.with(first_pass) })
 }
 
-impl VolumeSettings {
-    /// What goes with a lightmap: two and a half times its error, since a probe's is that of six faces and what is lit by
-    /// several of them errs less; or four times its paths, since they come from a sphere.
-    ///
-    /// Paths end at a coarse lightmap in any case: its bias is far below what a cube of six faces is off by.
-    pub fn beside(lightmap: &BakeSettings) -> Self {
-        let goal = match lightmap.goal {
-            Goal::Error(error) => Goal::Error((2.5 * error).min(1.0)),
-            Goal::Samples(count) => Goal::Samples(count.saturating_mul(4)),
-            Goal::Time(_) => Self::default().goal,
-        };
-        Self { transport: lightmap.transport, goal, threads: lightmap.threads, ..Self::default() }
-    }
-
-    /// Refuses what cannot be met.
-    ///
-    /// # Errors
-    ///
-    /// [`BakeError::Settings`].
-    pub fn validate(&self) -> Result<(), BakeError> {
-        let refuse = |reason: String| Err(BakeError::Settings { setting: "volume", reason });
-        self.goal.validate()?;
-        if !(self.density > 0.0 && self.density.is_finite()) {
-            return refuse(format!("a density of {} texels per metre cannot be; ask for 4 or so", self.density));
-        }
-        if let Goal::Time(_) = self.goal {
-            return refuse("volumes are baked to an error or by paths; ask for one of these".into());
-        }
-        let is_length = |length: f32| length > 0.0 && length.is_finite();
-        match &self.boxes {
-            VolumeBoxes::Automatic { spacing: Some(spacing) } if !is_length(*spacing) => {
-                refuse(format!("a spacing of {spacing} m cannot be; ask for 0.5 or so"))
-            }
-            VolumeBoxes::Automatic { .. } => Ok(()),
-            VolumeBoxes::Given(boxes) => boxes.iter().try_for_each(|of| {
-                let is_box = of.centre.is_finite() && of.size.to_array().into_iter().all(is_length);
-                if is_box && of.rotation.is_normalized() && of.spacing.is_none_or(is_length) {
-                    return Ok(());
-                }
-                refuse(format!(
-                    "\"{}\" has a size, a place or a spacing that no box can have; give its Transform a scale above 0",
-                    of.id
-                ))
-            }),
-        }
-    }
-
-    /// The grids of all boxes, with their names and falloffs.
-    fn grids(
-        &self,
-        scene: &Scene,
-        tracer: &Tracer,
-        workers: &Workers,
-    ) -> Result<Vec<(StableId, Grid, f32)>, BakeError> {
-        match &self.boxes {
-            VolumeBoxes::Automatic { spacing } => {
-                let found = automatic::boxes(scene, *spacing, tracer, workers)?.into_iter().enumerate();
-                Ok(found.map(|(number, grid)| (StableId::new(format!("volume/{number}")), grid, 0.0)).collect())
-            }
-            VolumeBoxes::Given(boxes) => {
-                let grids: Vec<Grid> = boxes.iter().map(VolumeBox::grid).collect();
-                let falloffs = nesting::falloffs(&grids);
-                let named = boxes.iter().map(|of| of.id.clone()).zip(grids).zip(falloffs);
-                Ok(named.map(|((id, grid), falloff)| (id, grid, falloff)).collect())
-            }
-        }
-    }
-}
-
-impl VolumeBox {
-    fn grid(&self) -> Grid {
-        let spacing = self.spacing.unwrap_or((self.size.max_element() / 32.0).max(0.25));
-        Grid::new(self.centre, self.rotation, self.size, spacing)
-    }
-}
-
 /// Tells of texels as of probes.
 struct OfProbes<'a>(&'a dyn ProgressSink);
 
@@ -308,74 +163,6 @@ impl ProgressSink for OfProbes<'_> {
         let stage = if progress.stage == Stage::Gather { Stage::Probes } else { progress.stage };
         self.0.report(Progress { stage, ..progress });
     }
-}
-
-/// A volume before it is measured.
-struct Site {
-    id: StableId,
-    grid: Grid,
-    falloff: f32,
-    stands: Vec<Stand>,
-    rooms: Rooms,
-}
-
-impl Site {
-    /// Where its probes stand that count.
-    fn points(&self) -> impl Iterator<Item = Vec3> {
-        let in_air = self.stands.iter().zip(&self.rooms.is_in_air).filter(|(_, is_in_air)| **is_in_air);
-        in_air.filter_map(|(stand, _)| stand.point())
-    }
-
-    /// The volume for what these probes have measured, in their order.
-    fn volume(mut self, moments: Vec<Moments>) -> Volume {
-        let mut moments = moments.into_iter();
-        let of_probe = |&is_in_air: &bool| if is_in_air { moments.next() } else { None };
-        let measured: Vec<Option<Moments>> = self.rooms.is_in_air.iter().map(of_probe).collect();
-        self.leave_the_void(&measured);
-        let shown = fill(&self.grid, &self.rooms, &measured);
-        let state = |(stand, is_in_air): (&Stand, &bool)| match (is_in_air, stand) {
-            (true, Stand::Air { is_moved: false, .. }) => ProbeState::Measured,
-            (true, Stand::Air { is_moved: true, .. }) => ProbeState::Moved,
-            _ => ProbeState::Filled,
-        };
-        let Grid { centre, rotation, size, resolution } = self.grid;
-        Volume {
-            id: self.id,
-            centre,
-            rotation,
-            size,
-            resolution,
-            falloff: self.falloff,
-            cubes: shown.iter().map(|moments| AmbientCube::fit(&moments.0).faces.map(|face| face.as_vec3())).collect(),
-            probes: self.stands.iter().zip(&self.rooms.is_in_air).map(state).collect(),
-        }
-    }
-}
-
-impl Site {
-    /// Takes probes out of the air that no light reaches and around which much is nothing at all. That is the void outside
-    /// of a level, where nobody goes; its dark would count as a dark room's beside the walls around the level.
-    fn leave_the_void(&mut self, measured: &[Option<Moments>]) {
-        let is_void = |index: usize| {
-            let is_black = measured[index].as_ref().is_some_and(|moments| moments.luminance() == 0.0);
-            is_black && matches!(self.stands[index], Stand::Air { is_open: true, .. })
-        };
-        let void: Vec<usize> = (0..self.stands.len()).filter(|&index| is_void(index)).collect();
-        if void.len() < measured.iter().flatten().count() {
-            for index in void {
-                self.rooms.leave_out(index);
-            }
-        }
-    }
-}
-
-/// Where the probes of a grid stand, and which of them share a room.
-fn survey(grid: Grid, tracer: &Tracer, workers: &Workers) -> Result<(Vec<Stand>, Rooms), BakeError> {
-    let all: Vec<usize> = (0..grid.len()).collect();
-    let stands = workers.gather_quietly(&all, |&index, _| Some(Stand::new(tracer, &grid, index)))?;
-    let links = workers.gather_quietly(&all, |&index, _| Some(Rooms::half_links(tracer, &grid, &stands, index)))?;
-    let rooms = Rooms::new(grid, &stands, Rooms::both_ways(&grid, links));
-    Ok((stands, rooms))
 }
 
 /// What all probes have measured.
