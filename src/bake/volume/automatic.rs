@@ -11,6 +11,7 @@ use super::stand::Stand;
 use super::{MOST_VOLUMES, survey};
 use crate::bake::BakeError;
 use crate::bake::workers::Workers;
+use crate::math::Portable;
 use crate::scene::Scene;
 use crate::trace::Tracer;
 use glam::{Quat, Vec3};
@@ -50,7 +51,7 @@ pub(super) fn boxes(
     let Some([low, high]) = bounds(scene) else { return Ok(Vec::new()) };
     let high = high.with_y(high.y.max(low.y + HEADROOM));
     let size = (high - low).max(Vec3::splat(1e-3));
-    let finest = (size.element_product() / MOST_PROBES).cbrt().max(FINEST);
+    let finest = Portable::powf(size.element_product() / MOST_PROBES, 1.0 / 3.0).max(FINEST);
     let spacing = spacing.unwrap_or(finest);
     let whole = Grid::new(0.5 * (low + high), Quat::IDENTITY, size, spacing);
     let mut parts = Vec::new();
