@@ -326,7 +326,7 @@ fn a_bake_that_is_watched_is_the_same() {
 /// Held for a while now and then, a bake is the same.
 #[test]
 fn a_bake_that_was_paused_is_the_same() {
-    /// Pauses at every tenth report until another thread lets it go on.
+    /// Pauses at every second report until another thread lets it go on.
     struct Restless {
         token: CancelToken,
         reports: Mutex<u32>,
@@ -336,7 +336,7 @@ fn a_bake_that_was_paused_is_the_same() {
         fn report(&self, _: Progress) {
             let mut reports = self.reports.lock().unwrap();
             *reports += 1;
-            if reports.is_multiple_of(10) {
+            if reports.is_multiple_of(2) {
                 self.token.pause();
                 self.pauses.send(()).unwrap();
             }
