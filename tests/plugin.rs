@@ -128,8 +128,10 @@ fn count<C: Component>(world: &mut World) -> usize {
     world.query_filtered::<(), With<C>>().iter(world).count()
 }
 
+/// A bake that shows nothing before its end: what is on the screen at which frame would hang on the clock else.
 fn small() -> BakeLightmaps {
     BakeLightmaps {
+        view: BakeView::WhenDone,
         scene: SceneSettings { emissive: EmissiveUnit::Nits, ..default() },
         goal: BakeGoal::Samples(16),
         layout: LightmapLayout::Shared { size: 32 },
