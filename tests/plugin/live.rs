@@ -2,8 +2,13 @@
 
 use super::*;
 
+/// Shown on its way.
+fn seen(goal: BakeGoal) -> BakeLightmaps {
+    BakeLightmaps { goal, view: BakeView::Live, threads: 1, ..small() }
+}
+
 fn endless() -> BakeLightmaps {
-    BakeLightmaps { goal: BakeGoal::Samples(1 << 20), threads: 1, ..small() }
+    seen(BakeGoal::Samples(1 << 20))
 }
 
 fn run_until_shown(app: &mut App) {
@@ -14,7 +19,7 @@ fn run_until_shown(app: &mut App) {
 fn texels_are_shown_as_they_come_and_go_when_the_bake_is_stopped() {
     let mut app = cornell(&data(""));
     let before = snapshot(app.world_mut());
-    app.world_mut().trigger(BakeLightmaps { goal: BakeGoal::Samples(4096), threads: 1, ..small() });
+    app.world_mut().trigger(seen(BakeGoal::Samples(4096)));
     run_until_shown(&mut app);
     assert!(app.world().resource::<Heard>().finished.is_empty(), "shown while it runs");
     let coarse = texels(app.world_mut());
