@@ -6,27 +6,13 @@
 //! cargo run --features full --example furnished -- --folder out/furnished --bicubic
 //! ```
 //!
-//! All but the scene is shared with the example `cornell_box`.
+//! All but the scene is in `examples/common`.
 
-#[path = "../cornell_box/args.rs"]
-mod args;
-#[path = "../cornell_box/bake.rs"]
-mod bake;
-#[path = "../cornell_box/folder.rs"]
-mod folder;
-#[path = "../cornell_box/overlay.rs"]
-mod overlay;
-#[path = "../cornell_box/room.rs"]
-mod room;
-#[path = "../cornell_box/run.rs"]
-mod run;
-#[path = "../cornell_box/shoot.rs"]
-mod shoot;
-#[path = "../cornell_box/stage.rs"]
-mod stage;
+#[path = "../common/mod.rs"]
+mod common;
 
 use bevy::prelude::*;
-use stage::Stage;
+use common::Stage;
 
 const STAGE: Stage = Stage {
     name: "furnished",
@@ -35,12 +21,9 @@ const STAGE: Stage = Stage {
     sky: [1200.0, 1500.0, 2000.0],
     background: Color::WHITE,
     ev100: 9.0,
-    size: [1280, 720],
-    window: [1280, 720],
-    keys: "",
-    besides: |_| {},
+    ..Stage::PLAIN
 };
 
 fn main() -> AppExit {
-    run::run(STAGE)
+    common::run(STAGE)
 }

@@ -1,6 +1,6 @@
 //! Balls that are carried around the room. They have no lightmap: they are what moves.
 
-use crate::args::Args;
+use crate::common::args::Args;
 use bevy::light::IrradianceVolume;
 use bevy::prelude::*;
 use bevy_kiln::prelude::*;

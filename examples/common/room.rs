@@ -1,10 +1,10 @@
 //! The room from its file, what of it takes part in a bake, and a camera that goes around it.
 
-use crate::args::Args;
-use crate::bake::Status;
+use super::args::Args;
+use super::bake::Status;
 use bevy::asset::LoadState;
 use bevy::camera::Exposure;
-use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
+use bevy::core_pipeline::tonemapping::DebandDither;
 use bevy::input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollUnit};
 use bevy::prelude::*;
 use bevy::world_serialization::WorldInstanceReady;
@@ -22,7 +22,7 @@ struct Room(Handle<WorldAsset>);
 
 /// A camera that looks at a point from a distance.
 #[derive(Component)]
-struct Orbit {
+pub struct Orbit {
     target: Vec3,
     yaw: f32,
     pitch: f32,
@@ -45,11 +45,10 @@ fn open(args: Res<Args>, assets: Res<AssetServer>, mut commands: Commands) {
     commands.insert_resource(Room(scene.clone()));
     // Everything in the file receives a lightmap, but for what `ready` marks otherwise.
     commands.spawn((WorldAssetRoot(scene), LightmapReceiver::default()));
-    // Colours as they are, so that the screen can be held against a path-traced picture.
     commands.spawn((
         Camera3d::default(),
         Exposure { ev100: args.ev100 },
-        Tonemapping::None,
+        stage.tonemapping,
         DebandDither::Disabled,
         Orbit { target: Vec3::ZERO, yaw: 0.0, pitch: 0.0, distance: stage.distance },
     ));
@@ -74,14 +73,19 @@ type OwnCamera<'a> = (&'a mut Transform, &'a mut Projection, &'a mut Orbit);
 
 /// The room is there: takes over the view of the file's camera, and marks the lamp.
 fn ready(
-    _: On<WorldInstanceReady>,
+    ready: On<WorldInstanceReady>,
+    rooms: Query<(), With<LightmapReceiver>>,
     names: Query<(Entity, &Name)>,
-    mut theirs: Query<FileCamera, Without<Orbit>>,
+    mut theirs: Query<FileCamera, (With<Camera3d>, Without<Orbit>)>,
     own: Single<OwnCamera>,
     mut suns: Query<&mut DirectionalLight>,
     mut status: ResMut<Status>,
     mut commands: Commands,
 ) {
+    // An example may have scenes of its own besides.
+    if !rooms.contains(ready.entity) {
+        return;
+    }
     let (mut transform, mut projection, mut orbit) = own.into_inner();
     for (view, lens, mut camera) in &mut theirs {
         camera.is_active = false;

@@ -1,9 +1,9 @@
 //! A run without a person: bakes or opens a folder, waits until the lightmaps are on the screen, takes its picture,
 //! ends.
 
-use crate::args::Args;
-use crate::bake::{Status, start};
-use crate::overlay::Overlay;
+use super::args::Args;
+use super::bake::{Status, start};
+use super::overlay::Overlay;
 use bevy::pbr::Lightmap;
 use bevy::prelude::*;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};

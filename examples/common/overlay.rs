@@ -1,7 +1,7 @@
 //! Words on the screen: the keys, and where things stand.
 
-use crate::args::Args;
-use crate::bake::Status;
+use super::args::Args;
+use super::bake::Status;
 use bevy::prelude::*;
 
 const HELP: &str =

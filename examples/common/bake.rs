@@ -1,8 +1,9 @@
 //! The keys, and what the kiln says.
 
-use crate::args::Args;
+use super::args::Args;
 use bevy::prelude::*;
 use bevy_kiln::bake::Stage;
+use bevy_kiln::output::{OutputFormat, write_bake};
 use bevy_kiln::prelude::*;
 
 /// Where things stand.
@@ -29,7 +30,7 @@ pub fn plugin(app: &mut App) {
     app.init_resource::<Status>()
         .add_systems(Update, keys)
         .add_observer(|at: On<BakeProgress>, mut status: ResMut<Status>| *status = Status::Baking(Some(*at.event())))
-        .add_observer(|done: On<BakeFinished>, mut status: ResMut<Status>| *status = Status::Lit(done.event().clone()))
+        .add_observer(finished)
         .add_observer(failed);
 }
 
@@ -62,9 +63,28 @@ fn keys(
 
 /// Asks for a bake; the game runs on.
 pub fn start(args: &Args, status: &mut Status, commands: &mut Commands) {
-    let scene = SceneSettings { sky_radiance: args.stage.sky.into(), ..default() };
-    commands.trigger(BakeLightmaps { scene, goal: BakeGoal::Samples(args.spp), density: args.density, ..default() });
+    // What glows lights the room as bright as it is seen.
+    let emissive = EmissiveUnit::AsDisplayed { ev100: args.ev100 };
+    commands.trigger(BakeLightmaps {
+        scene: SceneSettings { sky_radiance: args.stage.sky.into(), emissive, ..default() },
+        goal: BakeGoal::Samples(args.spp),
+        density: args.density,
+        volumes: args.stage.volumes,
+        ..default()
+    });
     *status = Status::Baking(None);
+}
+
+/// The lightmaps are on the screen; `--save` keeps them as a folder, too.
+fn finished(done: On<BakeFinished>, args: Res<Args>, mut status: ResMut<Status>) {
+    let written = args.save.as_ref().map_or(Ok(()), |folder| {
+        let scene = args.stage.file;
+        write_bake(&done.lightmap, &done.volumes, scene, folder, OutputFormat::Rgb9e5).map(|_| ())
+    });
+    *status = match written {
+        Ok(()) => Status::Lit(done.event().clone()),
+        Err(error) => Status::Failed(error.to_string()),
+    };
 }
 
 fn failed(failed: On<BakeFailed>, mut status: ResMut<Status>) {

@@ -1,6 +1,6 @@
 //! What the command line asks for.
 
-use crate::stage::Stage;
+use super::stage::Stage;
 use bevy::prelude::Resource;
 use bevy_kiln::prelude::LightmapFiltering;
 use std::path::PathBuf;
@@ -16,6 +16,8 @@ pub struct Args {
     pub density: f32,
     /// A bake of before, which is shown instead.
     pub folder: Option<PathBuf>,
+    /// Where a bake is written to.
+    pub save: Option<PathBuf>,
     /// How texels are filtered.
     pub filtering: LightmapFiltering,
     /// The camera's exposure value at ISO 100.
@@ -37,10 +39,11 @@ pub fn usage(stage: &Stage) -> String {
     let Stage { name, ev100, size: [width, height], .. } = stage;
     format!(
         "\
-usage: {name} [--spp N] [--density D] [--folder DIR] [--bicubic] [--ev100 EV] [--screenshot FILE.png [--size N|WxH]]
+usage: {name} [--spp N] [--density D] [--folder DIR | --save DIR] [--bicubic] [--ev100 EV] [--screenshot FILE.png [--size N|WxH]]
   --spp N             paths from each texel (64)
   --density D         texels per metre (16)
   --folder DIR        show what the kiln command has baked, instead of baking
+  --save DIR          write what is baked to a folder, as the kiln command does
   --bicubic           filter texels by cubic splines rather than linearly
   --ev100 EV          the camera's exposure value; less is brighter ({ev100})
   --screenshot FILE   bake, take a picture of the window, end
@@ -53,7 +56,8 @@ impl Args {
     pub fn parse(stage: Stage, mut words: impl Iterator<Item = String>) -> Result<Call, String> {
         let filtering = LightmapFiltering::Bilinear;
         let Stage { ev100, size, .. } = stage;
-        let mut args = Self { stage, spp: 64, density: 16.0, folder: None, filtering, ev100, screenshot: None, size };
+        let mut args =
+            Self { stage, spp: 64, density: 16.0, folder: None, save: None, filtering, ev100, screenshot: None, size };
         while let Some(word) = words.next() {
             let mut value = || words.next().ok_or_else(|| format!("{word} needs a value"));
             match word.as_str() {
@@ -61,12 +65,16 @@ impl Args {
                 "--spp" => args.spp = number(&word, &value()?, [1.0, 1e6])? as u32,
                 "--density" => args.density = number(&word, &value()?, [0.1, 1000.0])? as f32,
                 "--folder" => args.folder = Some(PathBuf::from(value()?)),
+                "--save" => args.save = Some(PathBuf::from(value()?)),
                 "--bicubic" => args.filtering = LightmapFiltering::Bicubic,
                 "--ev100" => args.ev100 = number(&word, &value()?, [-20.0, 30.0])? as f32,
                 "--screenshot" => args.screenshot = Some(picture(value()?)?),
                 "--size" => args.size = size_of(&word, &value()?)?,
                 _ => return Err(format!("there is no argument {word}")),
             }
+        }
+        if args.folder.is_some() && args.save.is_some() {
+            return Err("--folder shows a bake of before, and there is none to --save".into());
         }
         Ok(Call::Run(args))
     }

@@ -1,7 +1,7 @@
 //! A bake of before on the scene, as a shipped game shows it.
 
-use crate::args::Args;
-use crate::bake::Status;
+use super::args::Args;
+use super::bake::Status;
 use bevy::asset::LoadState;
 use bevy::prelude::*;
 use bevy::world_serialization::WorldAssetRoot;

@@ -2,6 +2,8 @@
 
 use bevy::app::App;
 use bevy::color::Color;
+use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy_kiln::prelude::BakeVolumes;
 
 /// A scene and how it is looked at.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +20,10 @@ pub struct Stage {
     pub background: Color,
     /// The camera's exposure value at ISO 100.
     pub ev100: f32,
+    /// What becomes of what is brighter than the screen.
+    pub tonemapping: Tonemapping,
+    /// Which irradiance volumes are baked as well.
+    pub volumes: BakeVolumes,
     /// Width and height of a picture [pixels].
     pub size: [u32; 2],
     /// Width and height of the window that a person looks at [pixels].
@@ -26,4 +32,22 @@ pub struct Stage {
     pub keys: &'static str,
     /// What is in the app besides.
     pub besides: fn(&mut App),
+}
+
+impl Stage {
+    /// A scene in a dark void, its colours as they are, so that the screen can be held against a path-traced picture.
+    pub const PLAIN: Self = Self {
+        name: "",
+        file: "",
+        distance: 3.5,
+        sky: [0.0; 3],
+        background: Color::BLACK,
+        ev100: 9.7,
+        tonemapping: Tonemapping::None,
+        volumes: BakeVolumes::WhereCalledFor,
+        size: [1280, 720],
+        window: [1280, 720],
+        keys: "",
+        besides: |_| {},
+    };
 }

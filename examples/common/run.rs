@@ -1,8 +1,8 @@
 //! The app: engine, window, plugin, and what is the same for every scene.
 
-use crate::args::{Args, Call, usage};
-use crate::stage::Stage;
-use crate::{bake, folder, overlay, room, shoot};
+use super::args::{Args, Call, usage};
+use super::stage::Stage;
+use super::{bake, folder, overlay, room, shoot};
 use bevy::asset::UnapprovedPathMode;
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
