@@ -10,6 +10,7 @@ use bevy_kiln::bake::{
 };
 use bevy_kiln::math::luminance;
 use bevy_kiln::scene::{Light, RectLight, Scene};
+use common::measured::{Measured, exceeding, texels};
 use common::scenes::{SceneBuilder, grey};
 use glam::{Vec2, Vec3};
 use std::collections::BTreeMap;
@@ -100,49 +101,8 @@ fn from_nothing(scene: &Scene, settings: &BakeSettings) -> Lightmap {
 /// Changes a scene.
 type Edit = fn(&mut Scene);
 
-/// A measured texel: its value before repair and the standard error of that.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Measured {
-    raw: Vec3,
-    stderr: Vec3,
-}
-
-/// By object and place in its rectangle.
-type Texels = BTreeMap<(StableId, [u32; 2]), Measured>;
-
-fn texels(lightmap: &Lightmap) -> Texels {
-    let mut texels = Texels::new();
-    for placement in &lightmap.placements {
-        let page = &lightmap.pages[placement.page as usize];
-        let corner =
-            |uv: [f32; 2]| [(uv[0] * page.width as f32).round() as u32, (uv[1] * page.height as f32).round() as u32];
-        let (low, high) = (corner(placement.uv_min), corner(placement.uv_max));
-        for (row, column) in (low[1]..high[1]).flat_map(|row| (low[0]..high[0]).map(move |column| (row, column))) {
-            let index = (row * page.width + column) as usize;
-            if page.state[index] == TexelState::Measured {
-                let measured = Measured { raw: page.raw[index], stderr: page.stderr[index] };
-                texels.insert((placement.id.clone(), [column - low[0], row - low[1]]), measured);
-            }
-        }
-    }
-    texels
-}
-
 fn is_of(name: &str) -> impl Fn(&(&(StableId, [u32; 2]), &Measured)) -> bool + '_ {
     move |((id, _), _)| id.as_str().starts_with(name)
-}
-
-/// Share of the texels that are farther off a reference than was asked for, the reference's own error granted.
-fn exceeding(answer: &Lightmap, reference: &Texels) -> f64 {
-    let value = |measured: &Measured| luminance(measured.raw.as_dvec3());
-    let floor = 0.1 * reference.values().map(value).sum::<f64>() / reference.len() as f64;
-    let answer = texels(answer);
-    assert_eq!(answer.len(), reference.len());
-    let is_off = |(place, known): &(&(StableId, [u32; 2]), &Measured)| {
-        let granted = luminance(known.stderr.as_dvec3());
-        (value(&answer[*place]) - value(known)).abs() > TARGET * value(known).max(floor) + granted
-    };
-    reference.iter().filter(is_off).count() as f64 / reference.len() as f64
 }
 
 #[test]
@@ -200,14 +160,14 @@ fn whatever_is_kept_the_error_is_the_one_that_was_asked_for() {
         bake(&mut baker, &rooms());
         let again = bake(&mut baker, &scene);
         let kept = again.report.kept.unwrap();
-        let exceeding = exceeding(&again, &reference);
+        let exceeding = exceeding(&again, &reference, TARGET);
         println!("{name}: kept {kept} of {}, {:.1} % exceeding", again.report.texels, 100.0 * exceeding);
         assert!(exceeding <= EXCEEDING, "{name}: {exceeding}");
         assert!(kept > 0 && kept < again.report.texels, "{name}");
         shares.push(kept as f64 / again.report.texels as f64);
         // A baker that keeps everything is found out.
         if texels(&unchanged).len() == reference.len() {
-            stale.push(self::exceeding(&unchanged, &reference));
+            stale.push(self::exceeding(&unchanged, &reference, TARGET));
         }
     }
     println!("kept {shares:.2?}; a stale map: {stale:.2?} exceeding");
@@ -233,7 +193,7 @@ fn small_changes_add_up() {
     assert!(kept.iter().any(|&share| share < 0.1), "9 % is not: {kept:?}");
     let reference = texels(&from_nothing(&scene, &settings(Goal::Samples(LONG))));
     let last = bake(&mut baker, &scene);
-    assert!(exceeding(&last, &reference) <= EXCEEDING);
+    assert!(exceeding(&last, &reference, TARGET) <= EXCEEDING);
 }
 
 /// Hears everything.

@@ -247,8 +247,8 @@ def main():
     for n, x in enumerate((-1.5, 2.0)):
         glb.object(f"light housing {n}", box([x - 0.95, HEIGHT - 0.1, -0.25], [x + 0.95, HEIGHT, 0.25]), black)
 
-    glb.light("sun", [-7.5, 4.5, 2.4], [-0.5, 0, 0.2], type="directional", color=[1, 0.94, 0.84], intensity=24000)
-    glb.light("cabinet lamp", [6.4, 2.6, 0.0], [6.4, 0, 0], type="point", color=[1, 0.72, 0.42], intensity=130)
+    glb.light("sun", [-7.5, 4.5, 2.4], [-0.5, 0, 0.2], type="directional", color=[1, 0.94, 0.84], intensity=36000)
+    glb.light("cabinet lamp", [6.4, 2.6, 0.0], [6.4, 0, 0], type="point", color=[1, 0.72, 0.42], intensity=1200)
     perspective = {"yfov": 0.96, "znear": 0.05, "aspectRatio": 16 / 9}
     camera = glb.add("cameras", {"type": "perspective", "perspective": perspective})
     eye = [4.1, 1.72, 2.7]

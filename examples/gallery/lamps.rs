@@ -11,7 +11,7 @@ const PLACES: [Vec3; 2] = [Vec3::new(-1.5, 3.48, 0.0), Vec3::new(2.0, 3.48, 0.0)
 const SIZE: Vec2 = Vec2::new(1.75, 0.38);
 
 /// What each sends out [lm].
-const POWER: f32 = 5200.0;
+const POWER: f32 = 7500.0;
 
 pub fn plugin(app: &mut App) {
     app.add_systems(Startup, hang);

@@ -22,7 +22,7 @@ const STAGE: Stage = Stage {
     name: "gallery",
     file: "scenes/gallery.glb",
     distance: 4.6,
-    sky: [2000.0, 2600.0, 3600.0],
+    sky: [3000.0, 3800.0, 5000.0],
     background: Color::srgb(0.86, 0.93, 1.0),
     ev100: 9.7,
     tonemapping: Tonemapping::TonyMcMapface,

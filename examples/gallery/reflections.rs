@@ -10,7 +10,7 @@ const CENTRE: Vec3 = Vec3::new(1.6, 1.8, 0.0);
 const SIZE: Vec3 = Vec3::new(13.0, 4.2, 7.0);
 
 /// What white mirrors [cd/m²].
-const BRIGHTNESS: f32 = 320.0;
+const BRIGHTNESS: f32 = 450.0;
 
 pub fn plugin(app: &mut App) {
     app.add_systems(Startup, |mut commands: Commands, mut images: ResMut<Assets<Image>>| {

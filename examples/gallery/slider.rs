@@ -39,7 +39,7 @@ struct BeforeCamera;
 struct Line;
 
 pub fn plugin(app: &mut App) {
-    app.insert_resource(Slider { share: 0.5, is_held: false })
+    app.insert_resource(Slider { share: 0.32, is_held: false })
         .add_systems(Startup, spawn_overlay_camera)
         .add_systems(PreUpdate, drag.after(bevy::input::InputSystems))
         .add_systems(Update, come_and_go)

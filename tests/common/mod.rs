@@ -5,6 +5,7 @@ pub mod display;
 pub mod fresnel;
 pub mod garden;
 pub mod glb;
+pub mod measured;
 pub mod meter;
 pub mod scenes;
 pub mod statistics;

@@ -4,6 +4,7 @@ use crate::compare::compare;
 use crate::mask::walls;
 use crate::picture::Shown;
 use crate::skip;
+use crate::window::{lacks_a_renderer, program, text, under_a_display};
 use bevy_kiln::bake::{CancelToken, PictureSettings, render_picture};
 use bevy_kiln::plugin::extract_scene;
 use bevy_kiln::plugin::windowless::open_scene;
@@ -13,11 +14,12 @@ use bevy_kiln::trace::Transport;
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::process::Command;
 
 /// Exposure of a Bevy camera that nobody has touched.
 const EV100: f32 = 9.7;
+
+const EXAMPLE: &str = "cornell_box";
 
 const SIZE: u32 = 360;
 
@@ -27,7 +29,7 @@ fn the_window_shows_what_the_core_renders() {
     let file = folder.path().join("shot.png");
     let size = SIZE.to_string();
     let arguments = ["--size", &size, "--spp", "64", "--density", "16", "--screenshot"];
-    let Some(mut command) = example_under_a_display() else { return };
+    let Some(mut command) = under_a_display(EXAMPLE) else { return };
     let output = command.args(arguments).arg(&file).output().unwrap();
     if lacks_a_renderer(&output) {
         return skip("there is no graphics driver; .ci/install-renderer.sh installs one");
@@ -105,7 +107,7 @@ fn upside_down(shot: &Shown, walls: &[Option<usize>]) -> Shown {
 
 #[test]
 fn what_it_needs_and_does_not_find_ends_in_a_sentence() {
-    let Some(mut command) = example_under_a_display() else { return };
+    let Some(mut command) = under_a_display(EXAMPLE) else { return };
     let folder = temp_dir::TempDir::new().unwrap();
     let file = folder.path().join("shot.png");
     let output = command.env("BEVY_ASSET_ROOT", folder.path()).arg("--screenshot").arg(&file).output().unwrap();
@@ -117,50 +119,13 @@ fn what_it_needs_and_does_not_find_ends_in_a_sentence() {
     assert!(!file.exists());
 
     let without_display =
-        Command::new(example()).env_remove("DISPLAY").arg("--screenshot").arg(&file).output().unwrap();
+        Command::new(program(EXAMPLE)).env_remove("DISPLAY").arg("--screenshot").arg(&file).output().unwrap();
     assert_eq!(without_display.status.code(), Some(1), "{}", text(&without_display));
     assert!(text(&without_display).contains("It needs a display"), "{}", text(&without_display));
 
-    let wrong = Command::new(example()).args(["--spp", "none"]).output().unwrap();
+    let wrong = Command::new(program(EXAMPLE)).args(["--spp", "none"]).output().unwrap();
     assert_eq!(wrong.status.code(), Some(2));
     assert!(text(&wrong).contains("--spp takes a number from 1 to 1000000, not none"), "{}", text(&wrong));
-}
-
-/// The program that `cargo test` has built beside this one.
-fn example() -> PathBuf {
-    let own = std::env::current_exe().unwrap();
-    let profile = own.parent().and_then(Path::parent).unwrap();
-    let path = profile.join("examples").join("cornell_box").with_extension(std::env::consts::EXE_EXTENSION);
-    let hint = "build it first: cargo build --features full --example cornell_box";
-    assert!(path.is_file(), "there is no {}; {hint}", path.display());
-    path
-}
-
-/// The example on the display that there is, or on one of its own.
-fn example_under_a_display() -> Option<Command> {
-    if std::env::var_os("DISPLAY").is_some() {
-        return Some(Command::new(example()));
-    }
-    let has_xvfb = std::env::var_os("PATH")
-        .is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join("xvfb-run").is_file()));
-    if !has_xvfb {
-        skip("there is neither a display nor xvfb-run; .ci/install-renderer.sh installs the latter");
-        return None;
-    }
-    // Two that start at once and look for a free number find the same one; so each begins elsewhere.
-    static STARTED: AtomicU32 = AtomicU32::new(0);
-    let number = 100 + 8 * (std::process::id() % 1000) + STARTED.fetch_add(1, Ordering::Relaxed);
-    let mut command = Command::new("xvfb-run");
-    command.args(["-a", "-n", &number.to_string(), "-s", "-screen 0 1280x1024x24"]).arg(example());
-    Some(command)
-}
-
-fn lacks_a_renderer(output: &Output) -> bool {
-    !output.status.success() && text(output).contains("Unable to find a GPU")
-}
-
-fn text(output: &Output) -> String {
-    [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes)).concat()
 }
 
 fn scene() -> (Scene, Camera) {

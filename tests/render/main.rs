@@ -7,6 +7,7 @@
 mod common;
 mod compare;
 mod example;
+mod examples;
 mod live;
 mod mask;
 #[cfg(feature = "editor")]
@@ -16,6 +17,7 @@ mod picture;
 mod pieces;
 mod renderer;
 mod volume;
+mod window;
 mod worn;
 
 /// Ends a test that this machine cannot run.

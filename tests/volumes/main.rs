@@ -11,6 +11,7 @@ mod accuracy;
 mod closed_forms;
 mod hard;
 mod layout;
+mod rooms;
 mod walls;
 
 use bevy_kiln::artefact::StableId;
