@@ -5,6 +5,8 @@
 mod command;
 #[path = "plugin/environments.rs"]
 mod environments;
+#[path = "plugin/extras.rs"]
+mod extras;
 #[path = "plugin/filtering.rs"]
 mod filtering;
 #[allow(dead_code, reason = "the command line's tests use the rest of it")]

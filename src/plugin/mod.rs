@@ -41,9 +41,10 @@
 //! What moves is lit by irradiance volumes ([`BakeVolumes`]): they come with the lightmaps where the scene has meshes that
 //! take no part in the bake. Boxes are found, or placed as [`ProbeVolume`].
 //!
-//! Mark what shall receive a lightmap with [`LightmapReceiver`] and what only blocks and reflects with
-//! [`LightBlocker`], on the thing or on anything above it; without a receiver anywhere every mesh receives. What
-//! a folder of the `kiln` command holds goes on a scene as [`BakedLightmaps`] beside its root.
+//! Mark what shall receive a lightmap with [`LightmapReceiver`], what only blocks and reflects with [`LightBlocker`] and
+//! what moves with [`NotBaked`], on the thing or on anything above it; without a receiver anywhere every mesh receives.
+//! An artist marks the same in Blender, by custom properties (docs/blender.md). What a folder of the `kiln` command
+//! holds goes on a scene as [`BakedLightmaps`] beside its root.
 //!
 //! A bake shows itself while it runs ([`BakeView`]): the whole map in coarse first, then finished texels, those near the
 //! camera before those far off. Bake again after moving a lamp or adding a chair, and only what that reaches is measured
@@ -87,9 +88,9 @@ pub use display::{
 pub use baking::{
     AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeId, BakeLightmaps, BakePlanned, BakeProgress, BakeScope,
     BakeStatus, BakeView, BakeVolumes, CancelBake, ClearLightmaps, EmissiveUnit, Extraction, ExtractionWarning,
-    KilnBusy, KilnControl, KilnEnding, KilnOutcome, KilnWarning, KilnWork, LightBlocker, LightmapFormat,
-    LightmapLayout, LightmapReceiver, NextBake, PauseBake, PlanBake, ProbeVolume, RangeWindow, ResumeBake, RunningJob,
-    SceneSettings, Unreadable, Unsimulated, extract_scene,
+    KilnBusy, KilnControl, KilnEnding, KilnOutcome, KilnWarning, KilnWork, LightBlocker, LightmapDensity,
+    LightmapFormat, LightmapLayout, LightmapReceiver, NextBake, NotBaked, PauseBake, PlanBake, ProbeVolume,
+    RangeWindow, ResumeBake, RunningJob, SceneSettings, Unreadable, Unsimulated, extract_scene,
 };
 
 #[cfg(feature = "editor")]
@@ -109,6 +110,9 @@ pub enum KilnSystems {
     /// In `PreUpdate`: lightmaps go on and off, lights are muted and given back. Bevy looks for changed materials
     /// in `PostUpdate`, so nothing of this may be later.
     Display,
+    /// In `PostUpdate`, before transforms are propagated: what is marked in a glTF file that has spawned becomes
+    /// components.
+    Marks,
     /// In `Last`, where every transform is propagated: the snapshot for a bake that was asked for.
     Snapshot,
 }

@@ -3,6 +3,7 @@
 mod control;
 mod events;
 mod extract;
+mod extras;
 mod job;
 mod live;
 mod markers;
@@ -18,7 +19,7 @@ pub use events::{
     CancelBake, ClearLightmaps, LightmapFormat, LightmapLayout, PauseBake, PlanBake, ResumeBake,
 };
 pub use extract::{Extraction, ExtractionWarning, Unreadable, Unsimulated, extract_scene};
-pub use markers::{LightBlocker, LightmapReceiver, ProbeVolume};
+pub use markers::{LightBlocker, LightmapDensity, LightmapReceiver, NotBaked, ProbeVolume};
 pub use settings::{AmbientMode, EmissiveUnit, RangeWindow, SceneSettings};
 pub use status::{BakeId, BakeStatus, KilnEnding, KilnOutcome, KilnWork, RunningJob};
 pub use warning::KilnWarning;
@@ -33,6 +34,8 @@ pub(super) fn plugin(app: &mut App) {
         .register_type::<NextBake>()
         .register_type::<LightmapReceiver>()
         .register_type::<LightBlocker>()
+        .register_type::<NotBaked>()
+        .register_type::<LightmapDensity>()
         .register_type::<ProbeVolume>()
         .register_type::<BakeLightmaps>()
         .register_type::<PlanBake>()
@@ -49,5 +52,6 @@ pub(super) fn plugin(app: &mut App) {
         .add_observer(job::cancel)
         .add_observer(job::ask_clear)
         .add_systems(PreUpdate, job::look_after.in_set(KilnSystems::Display))
+        .add_systems(PostUpdate, extras::mark.in_set(KilnSystems::Marks).after(super::display::read_extras))
         .add_systems(Last, job::start.in_set(KilnSystems::Snapshot));
 }

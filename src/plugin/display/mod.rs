@@ -3,6 +3,7 @@
 mod apply;
 mod attach;
 mod attribute;
+mod extras;
 mod filtering;
 mod folder;
 mod light_baking;
@@ -24,6 +25,8 @@ pub(crate) use attach::{Shown, attach, attached, detach};
 #[cfg(feature = "bake")]
 pub(crate) use attribute::numbers;
 #[cfg(feature = "bake")]
+pub(crate) use extras::{ExtrasFault, KilnExtras, read_extras};
+#[cfg(feature = "bake")]
 pub(crate) use filtering::FilteredBy;
 #[cfg(feature = "bake")]
 pub(crate) use folder::lightmap_sampler;
@@ -36,6 +39,7 @@ pub(crate) use wear::{SharedLayout, own_mesh};
 
 use super::KilnSystems;
 use bevy::asset::AssetApp;
+use bevy::camera::visibility::VisibilitySystems;
 use bevy::prelude::*;
 
 pub(super) fn plugin(app: &mut App) {
@@ -48,6 +52,11 @@ pub(super) fn plugin(app: &mut App) {
         .register_type::<LightmapFiltering>()
         .init_resource::<LightmapFiltering>()
         .add_observer(apply::take_off_with_component)
+        .configure_sets(
+            PostUpdate,
+            KilnSystems::Marks.before(TransformSystems::Propagate).before(VisibilitySystems::VisibilityPropagate),
+        )
+        .add_systems(PostUpdate, extras::read_extras.in_set(KilnSystems::Marks))
         .add_systems(
             PreUpdate,
             (

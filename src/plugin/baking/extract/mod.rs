@@ -9,19 +9,22 @@ mod light;
 mod material;
 mod mesh;
 mod pose;
+mod role;
 mod shadow_flags;
 mod texture;
 mod volume;
 mod warning;
 
+use role::Role;
 pub use texture::Unreadable;
 pub use warning::{ExtractionWarning, Unsimulated};
 
 use super::events::BakeVolumes;
-use super::markers::{LightBlocker, LightmapReceiver};
+use super::markers::LightmapReceiver;
 use super::settings::SceneSettings;
 use crate::artefact::StableId;
 use crate::bake::{BakeSettings, VolumeBox, VolumeBoxes, VolumeSettings};
+use crate::plugin::display::{ExtrasFault, KilnExtras};
 use crate::plugin::stable_id;
 use crate::scene::{LightmapRequest, Scene, unique_ids};
 use bevy::camera::visibility::RenderLayers;
@@ -79,6 +82,7 @@ pub fn extract_scene(world: &mut World, settings: &SceneSettings) -> Extraction 
     let lights = light::find(world, settings, &mut out.warnings);
     let meshes = find_meshes(world, settings, &mut out);
     volume::extract(world, settings, &mut out);
+    find_faulty_extras(world, &mut out.warnings);
     out.warnings.sort_by_cached_key(ToString::to_string);
     let things: Vec<Thing> = meshes.into_iter().chain(lights).collect();
     for thing in name_all(world, things, &mut out) {
@@ -143,6 +147,16 @@ fn name_all(world: &World, mut things: Vec<Thing>, out: &mut Extraction) -> Vec<
     things
 }
 
+/// What was written on things in the modelling program and cannot be read.
+fn find_faulty_extras(world: &mut World, warnings: &mut Vec<ExtractionWarning>) {
+    let mut written = world.query::<(Entity, &KilnExtras)>();
+    for (entity, extras) in written.iter(world).filter(|(_, extras)| !extras.faults.is_empty()) {
+        let name = stable_id(world, entity).as_str().to_owned();
+        let faulty = |fault: &ExtrasFault| ExtractionWarning::Extras { name: name.clone(), fault: fault.to_string() };
+        warnings.extend(extras.faults.iter().map(faulty));
+    }
+}
+
 /// The meshes that take part, as their marks say.
 fn find_meshes(world: &mut World, settings: &SceneSettings, out: &mut Extraction) -> Vec<Thing> {
     let only_marked = world.query_filtered::<(), With<LightmapReceiver>>().iter(world).next().is_some();
@@ -151,12 +165,17 @@ fn find_meshes(world: &mut World, settings: &SceneSettings, out: &mut Extraction
     let (world, warnings) = (&*world, &mut out.warnings);
     let mut things = Vec::new();
     for entity in meshes.into_iter().filter(|&entity| is_visible(world, entity)) {
-        let mark = nearest_mark(world, entity);
-        if only_marked && mark.is_none() {
+        let mark = role::of(world, entity);
+        let mut request = match mark.role {
+            Some(Role::Mover) => None,
+            Some(Role::Blocker) => Some(None),
+            Some(Role::Receiver) => Some(Some(mark.request())),
+            None => (!only_marked).then(|| Some(mark.request())),
+        };
+        let Some(request) = &mut request else {
             out.has_movers = true;
             continue;
-        }
-        let mut role = mark.unwrap_or_else(|| Some(LightmapRequest::default()));
+        };
         let name = stable_id(world, entity).as_str().to_owned();
         if is_distant_lod(world, entity) {
             warnings.push(ExtractionWarning::DistantLevelOfDetail { name });
@@ -168,33 +187,18 @@ fn find_meshes(world: &mut World, settings: &SceneSettings, out: &mut Extraction
         }
         if let Some(how) = pose::deformation(world, entity) {
             // A character that walks on must not leave its shadow behind.
-            if mark.is_none() {
+            if mark.role.is_none() {
                 out.has_movers = true;
                 warnings.push(ExtractionWarning::Deformed { name, how });
                 continue;
             }
-            if role.take().is_some() {
+            if request.take().is_some() {
                 warnings.push(ExtractionWarning::Posed { name, how });
             }
         }
-        things.push(Thing::new(world, entity, Kind::Mesh(role)));
+        things.push(Thing::new(world, entity, Kind::Mesh(*request)));
     }
     things
-}
-
-/// What the nearest mark on or above an entity asks for; the inner `None` is a blocker's.
-fn nearest_mark(world: &World, entity: Entity) -> Option<Option<LightmapRequest>> {
-    let mut next = Some(entity);
-    while let Some(entity) = next {
-        if let Some(receiver) = world.get::<LightmapReceiver>(entity) {
-            return Some(Some(LightmapRequest { density: receiver.density }));
-        }
-        if world.get::<LightBlocker>(entity).is_some() {
-            return Some(None);
-        }
-        next = world.get::<ChildOf>(entity).map(ChildOf::parent);
-    }
-    None
 }
 
 fn is_visible(world: &World, entity: Entity) -> bool {

@@ -225,6 +225,14 @@ pub enum ExtractionWarning {
         /// The entity.
         name: String,
     },
+    /// A custom property of a glTF file that cannot be read.
+    #[error("\"{name}\" {fault}")]
+    Extras {
+        /// The entity.
+        name: String,
+        /// Which, and why.
+        fault: String,
+    },
     /// Two things that cannot be told apart.
     #[error("{count} things are called \"{id}\"; give each a KilnId so that a game can tell them apart")]
     SameId {
