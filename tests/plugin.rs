@@ -24,6 +24,8 @@ mod live;
 mod materials;
 #[path = "plugin/meshes.rs"]
 mod meshes;
+#[path = "plugin/render_world.rs"]
+mod render_world;
 #[path = "plugin/volumes.rs"]
 mod volumes;
 

@@ -89,7 +89,7 @@ pub use baking::{
     AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeId, BakeLightmaps, BakePlanned, BakeProgress, BakeScope,
     BakeStatus, BakeView, BakeVolumes, CancelBake, ClearLightmaps, EmissiveUnit, Extraction, ExtractionWarning,
     KilnBusy, KilnControl, KilnEnding, KilnOutcome, KilnWarning, KilnWork, LightBlocker, LightmapDensity,
-    LightmapFormat, LightmapLayout, LightmapReceiver, NextBake, NotBaked, PauseBake, PlanBake, ProbeVolume,
+    LightmapFormat, LightmapLayout, LightmapReceiver, NextBake, NotBaked, NotReread, PauseBake, PlanBake, ProbeVolume,
     RangeWindow, ResumeBake, RunningJob, SceneSettings, Unreadable, Unsimulated, extract_scene,
 };
 

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use temp_dir::TempDir;
 
 /// A floor of 2 m × 2 m, as a file's buffer: positions, normals, UV0, indices.
-fn floor() -> Vec<u8> {
+pub(super) fn floor() -> Vec<u8> {
     let corners = [[-1.0_f32, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]];
     let positions = corners.into_iter().flat_map(|[x, z]| [x, 0.0, z]);
     let normals = corners.into_iter().flat_map(|_| [0.0, 1.0, 0.0]);
@@ -20,7 +20,7 @@ fn floor() -> Vec<u8> {
 
 /// A file in which each of these nodes is; meshes 0 and 1 are floors, the second with a density and a role of its own;
 /// light 0 is a point light, light 1 a sun with a mode of its own.
-fn file(nodes: &Value) -> Value {
+pub(super) fn file(nodes: &Value) -> Value {
     let primitive =
         json!({ "attributes": { "POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2 }, "indices": 3, "material": 0 });
     let vector = |offset: usize| {

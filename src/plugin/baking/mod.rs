@@ -18,17 +18,20 @@ pub use events::{
     BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakePlanned, BakeProgress, BakeScope, BakeView, BakeVolumes,
     CancelBake, ClearLightmaps, LightmapFormat, LightmapLayout, PauseBake, PlanBake, ResumeBake,
 };
-pub use extract::{Extraction, ExtractionWarning, Unreadable, Unsimulated, extract_scene};
+pub use extract::{Extraction, ExtractionWarning, NotReread, Unreadable, Unsimulated, extract_scene};
 pub use markers::{LightBlocker, LightmapDensity, LightmapReceiver, NotBaked, ProbeVolume};
 pub use settings::{AmbientMode, EmissiveUnit, RangeWindow, SceneSettings};
 pub use status::{BakeId, BakeStatus, KilnEnding, KilnOutcome, KilnWork, RunningJob};
 pub use warning::KilnWarning;
 
 use super::KilnSystems;
+use bevy::asset::AssetApp;
 use bevy::prelude::*;
 
 pub(super) fn plugin(app: &mut App) {
-    app.init_resource::<job::Kiln>()
+    app.init_asset::<extract::reread::SecondReading>()
+        .register_asset_loader(extract::reread::FileLoader)
+        .init_resource::<job::Kiln>()
         .init_resource::<BakeStatus>()
         .init_resource::<NextBake>()
         .register_type::<NextBake>()

@@ -9,12 +9,14 @@ mod light;
 mod material;
 mod mesh;
 mod pose;
+pub(super) mod reread;
 mod role;
 mod shadow_flags;
 mod texture;
 mod volume;
 mod warning;
 
+pub use reread::NotReread;
 use role::Role;
 pub use texture::Unreadable;
 pub use warning::{ExtractionWarning, Unsimulated};
@@ -27,6 +29,7 @@ use crate::bake::{BakeSettings, VolumeBox, VolumeBoxes, VolumeSettings};
 use crate::plugin::display::{ExtrasFault, KilnExtras};
 use crate::plugin::stable_id;
 use crate::scene::{LightmapRequest, Scene, unique_ids};
+use bevy::asset::AssetPath;
 use bevy::camera::visibility::RenderLayers;
 use bevy::prelude::*;
 use std::collections::{BTreeMap, HashMap};
@@ -44,6 +47,8 @@ pub struct Extraction {
     pub volumes: Vec<VolumeBox>,
     /// Whether any mesh that is seen takes no part, as a thing that moves.
     pub has_movers: bool,
+    /// Files of what is with the renderer only and may be read again.
+    missed: Vec<AssetPath<'static>>,
     seen: Seen,
 }
 

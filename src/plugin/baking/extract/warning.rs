@@ -1,5 +1,6 @@
 //! What of a Bevy scene a bake leaves out or takes for something simpler, by name.
 
+use super::reread::NotReread;
 use super::texture::Unreadable;
 use thiserror::Error;
 
@@ -34,12 +35,14 @@ impl std::fmt::Display for Unsimulated {
 pub enum ExtractionWarning {
     /// The vertices are no longer in main memory.
     #[error(
-        "mesh \"{name}\" is in the render world only, so it is left out; load it with RenderAssetUsages::MAIN_WORLD \
-         as well"
+        "mesh \"{name}\" is in the render world only{why}, so it is left out; make or load it with \
+         RenderAssetUsages::MAIN_WORLD as well"
     )]
     RenderWorldOnly {
         /// The entity.
         name: String,
+        /// Why it was not read again.
+        why: NotReread,
     },
     /// The mesh asset is not there.
     #[error("mesh \"{name}\" is not loaded, so it is left out; bake once it is")]
