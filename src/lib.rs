@@ -64,7 +64,8 @@ pub mod prelude {
         PlanBake, ProbeVolume, RangeWindow, ResumeBake, SceneSettings,
     };
     pub use crate::plugin::{
-        BakedFolder, BakedLightmaps, BakedVolume, KilnId, KilnPlugin, KilnSystems, LightBaking, LightmapFiltering,
+        BakedFolder, BakedLightmaps, BakedMaterialApp, BakedVolume, KilnId, KilnPlugin, KilnSystems, LightBaking,
+        LightmapFiltering,
     };
     #[cfg(feature = "editor")]
     pub use crate::plugin::{KilnPanel, KilnSelect};

@@ -3,6 +3,8 @@
 
 #[path = "plugin/command.rs"]
 mod command;
+#[path = "plugin/custom_materials.rs"]
+mod custom_materials;
 #[path = "plugin/environments.rs"]
 mod environments;
 #[path = "plugin/extras.rs"]

@@ -58,7 +58,8 @@
 //! While the bake is shown, the entity's `Mesh3d` holds such a copy; it gets its own mesh back with `ClearLightmaps` or
 //! when [`BakedLightmaps`] goes. A game that changes a mesh after its bake sees the change when it is baked again.
 //!
-//! Lights, materials and skies are read as Bevy shows them. What shines from all around is a camera's
+//! Lights, materials and skies are read as Bevy shows them; a material of the game's own as the game describes it
+//! ([`BakedMaterialApp::add_baked_material`]). What shines from all around is a camera's
 //! `EnvironmentMapLight`, or the picture in [`SceneSettings::environment`]. A `RectLight` is baked in any case, but
 //! Bevy draws it only with its own feature `area_light_luts`. Bevy's glTF loader gives lights without a range one of 20
 //! m, and spot lights their range as their radius; both are taken away again. It also takes their linear colours for
@@ -80,8 +81,8 @@ mod shortcuts;
 pub mod windowless;
 
 pub use display::{
-    AppliedLightmaps, BakedFolder, BakedFolderError, BakedLightmaps, BakedVolume, KilnId, LightBaking,
-    LightmapFiltering, stable_id,
+    AppliedLightmaps, BakedFolder, BakedFolderError, BakedLightmaps, BakedMaterialApp, BakedVolume, KilnId,
+    LightBaking, LightmapFiltering, stable_id,
 };
 
 #[cfg(feature = "bake")]

@@ -7,6 +7,7 @@ mod extras;
 mod filtering;
 mod folder;
 mod light_baking;
+mod material;
 mod mute;
 mod relay;
 mod stable_path;
@@ -17,6 +18,7 @@ pub use apply::{AppliedLightmaps, BakedLightmaps};
 pub use filtering::LightmapFiltering;
 pub use folder::{BakedFolder, BakedFolderError};
 pub use light_baking::LightBaking;
+pub use material::BakedMaterialApp;
 pub use stable_path::{KilnId, stable_id};
 pub use volume::BakedVolume;
 
@@ -30,6 +32,8 @@ pub(crate) use extras::{ExtrasFault, KilnExtras, read_extras};
 pub(crate) use filtering::FilteredBy;
 #[cfg(feature = "bake")]
 pub(crate) use folder::lightmap_sampler;
+#[cfg(feature = "bake")]
+pub(crate) use material::{FoundMaterial, find_described};
 #[cfg(feature = "bake")]
 pub(crate) use mute::{MutedLight, mute_light, unmute_light};
 #[cfg(feature = "bake")]

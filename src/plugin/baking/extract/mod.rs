@@ -29,7 +29,7 @@ use crate::bake::{BakeSettings, VolumeBox, VolumeBoxes, VolumeSettings};
 use crate::plugin::display::{ExtrasFault, KilnExtras};
 use crate::plugin::stable_id;
 use crate::scene::{LightmapRequest, Scene, unique_ids};
-use bevy::asset::AssetPath;
+use bevy::asset::{AssetPath, UntypedAssetId};
 use bevy::camera::visibility::RenderLayers;
 use bevy::prelude::*;
 use std::collections::{BTreeMap, HashMap};
@@ -78,7 +78,7 @@ impl Extraction {
 struct Seen {
     meshes: HashMap<AssetId<Mesh>, Option<usize>>,
     textures: HashMap<AssetId<Image>, Option<usize>>,
-    materials: HashMap<AssetId<StandardMaterial>, usize>,
+    materials: HashMap<UntypedAssetId, usize>,
 }
 
 /// Reads the world as it stands; its transforms and visibility must have been propagated, as they are in `Last`.

@@ -142,8 +142,8 @@ pub enum ExtractionWarning {
     },
     /// The mesh has no material that is understood.
     #[error(
-        "mesh \"{name}\" has no StandardMaterial, so it is taken as mid-grey and gets no lightmap; mark what is not \
-         part of the scene by giving the rest a LightmapReceiver"
+        "mesh \"{name}\" has no StandardMaterial, so it is taken as mid-grey and gets no lightmap; say what its \
+         material looks like with App::add_baked_material, or mark it NotBaked if it is not part of the scene"
     )]
     NoStandardMaterial {
         /// The entity.
