@@ -5,6 +5,7 @@
 
 mod camera;
 mod environment;
+mod hidden;
 mod light;
 mod material;
 mod mesh;
@@ -30,7 +31,7 @@ use crate::plugin::display::{ExtrasFault, KilnExtras};
 use crate::plugin::stable_id;
 use crate::scene::{LightmapRequest, Scene, unique_ids};
 use bevy::asset::{AssetPath, UntypedAssetId};
-use bevy::camera::visibility::RenderLayers;
+use bevy::camera::visibility::{RenderLayers, VisibilityRange};
 use bevy::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 
@@ -49,6 +50,7 @@ pub struct Extraction {
     pub has_movers: bool,
     /// Files of what is with the renderer only and may be read again.
     missed: Vec<AssetPath<'static>>,
+    hidden: Vec<Entity>,
     seen: Seen,
 }
 
@@ -84,9 +86,10 @@ struct Seen {
 /// Reads the world as it stands; its transforms and visibility must have been propagated, as they are in `Last`.
 pub fn extract_scene(world: &mut World, settings: &SceneSettings) -> Extraction {
     let mut out = Extraction::default();
-    let lights = light::find(world, settings, &mut out.warnings);
+    let lights = light::find(world, settings, &mut out);
     let meshes = find_meshes(world, settings, &mut out);
     volume::extract(world, settings, &mut out);
+    hidden::name(world, &mut out);
     find_faulty_extras(world, &mut out.warnings);
     out.warnings.sort_by_cached_key(ToString::to_string);
     let things: Vec<Thing> = meshes.into_iter().chain(lights).collect();
@@ -169,7 +172,7 @@ fn find_meshes(world: &mut World, settings: &SceneSettings, out: &mut Extraction
     let meshes: Vec<Entity> = meshes.iter(world).collect();
     let (world, warnings) = (&*world, &mut out.warnings);
     let mut things = Vec::new();
-    for entity in meshes.into_iter().filter(|&entity| is_visible(world, entity)) {
+    for entity in meshes {
         let mark = role::of(world, entity);
         let mut request = match mark.role {
             Some(Role::Mover) => None,
@@ -177,17 +180,24 @@ fn find_meshes(world: &mut World, settings: &SceneSettings, out: &mut Extraction
             Some(Role::Receiver) => Some(Some(mark.request())),
             None => (!only_marked).then(|| Some(mark.request())),
         };
+        let is_visible = is_visible(world, entity);
         let Some(request) = &mut request else {
-            out.has_movers = true;
+            out.has_movers |= is_visible;
             continue;
         };
-        let name = stable_id(world, entity).as_str().to_owned();
-        if is_distant_lod(world, entity) {
-            warnings.push(ExtractionWarning::DistantLevelOfDetail { name });
+        if !is_visible {
+            out.hidden.push(entity);
             continue;
         }
+        let name = stable_id(world, entity).as_str().to_owned();
         if !is_on_layers(world, entity, settings) {
             warnings.push(ExtractionWarning::OtherLayers { name });
+            continue;
+        }
+        if let Some(metres) = distant_lod(world, entity) {
+            // Far off it has no lightmap to show.
+            out.has_movers = true;
+            warnings.push(ExtractionWarning::DistantLevelOfDetail { name, metres });
             continue;
         }
         if let Some(how) = pose::deformation(world, entity) {
@@ -216,7 +226,8 @@ fn is_on_layers(world: &World, entity: Entity, settings: &SceneSettings) -> bool
     layers.intersects(&settings.layers)
 }
 
-fn is_distant_lod(world: &World, entity: Entity) -> bool {
-    use bevy::camera::visibility::VisibilityRange;
-    world.get::<VisibilityRange>(entity).is_some_and(|range| range.start_margin.start > 0.0)
+/// From which distance on [m] a coarser level of detail is shown; `None` for what is seen from near.
+fn distant_lod(world: &World, entity: Entity) -> Option<f32> {
+    let range = world.get::<VisibilityRange>(entity)?;
+    Some(range.start_margin.start).filter(|&metres| metres > 0.0)
 }

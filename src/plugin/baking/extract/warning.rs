@@ -135,10 +135,28 @@ pub enum ExtractionWarning {
         consequence: &'static str,
     },
     /// The mesh is a coarser level of detail.
-    #[error("mesh \"{name}\" is shown from a distance only (VisibilityRange), so it is left out")]
+    #[error(
+        "mesh \"{name}\" is shown from {metres} m on only (VisibilityRange), so it is left out, as the levels of one \
+         object would shade each other; irradiance volumes light it (BakeVolumes), or let its nearest level be seen from \
+         afar"
+    )]
     DistantLevelOfDetail {
         /// The entity.
         name: String,
+        /// Where it begins to be seen [m].
+        metres: f32,
+    },
+    /// Something is hidden, with all that is below it.
+    #[error(
+        "\"{name}\" is hidden (Visibility), so it is left out with what is below it ({count} {} in all); show it while \
+         baking if it is a part of the scene",
+        if *count == 1 { "mesh or light" } else { "meshes and lights" }
+    )]
+    Hidden {
+        /// The entity.
+        name: String,
+        /// How many meshes and lights are left out.
+        count: usize,
     },
     /// The mesh has no material that is understood.
     #[error(
