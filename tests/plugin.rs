@@ -28,6 +28,8 @@ mod materials;
 mod meshes;
 #[path = "plugin/render_world.rs"]
 mod render_world;
+#[path = "plugin/shipping.rs"]
+mod shipping;
 #[path = "plugin/volumes.rs"]
 mod volumes;
 
@@ -44,7 +46,7 @@ use bevy::prelude::*;
 use bevy::world_serialization::WorldAssetRoot;
 use bevy_kiln::bake::bake_lightmap;
 use bevy_kiln::plugin::windowless::WindowlessPlugins;
-use bevy_kiln::plugin::{BakeId, Extraction, KilnEnding, KilnWork, extract_scene};
+use bevy_kiln::plugin::{AppliedLightmaps, BakeId, Extraction, KilnEnding, KilnWork, extract_scene};
 use bevy_kiln::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

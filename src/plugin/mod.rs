@@ -31,24 +31,24 @@
 //! ```
 //!
 //! [`BakePlanned`] answers [`PlanBake`]: what a bake would do and cost. [`PauseBake`] and [`ResumeBake`] hold it for a
-//! while, to the same bits. [`BakeStatus`] is what a panel shows of all that, and [`KilnControl`] asks from a system and
-//! hands back the number of the job. [`KilnShortcuts`] puts it on keys. With the feature `remote` and Bevy's
+//! while, to the same bits. [`BakeStatus`] is what a panel shows of all that, and [`KilnControl`] asks from a system
+//! and hands back the number of the job. [`KilnShortcuts`] puts it on keys. With the feature `remote` and Bevy's
 //! `RemotePlugin`, another process calls `kiln.bake`, `kiln.plan`, `kiln.progress`, `kiln.pause`, `kiln.resume`,
-//! `kiln.cancel` and `kiln.clear`, with any of `error`, `spp`, `time` [s] and `density` and what else
-//! [`BakeLightmaps`] has; what it leaves out is as [`NextBake`] says, as for the keys. Bind it to the loopback address:
-//! whoever reaches the port can do anything with the app.
+//! `kiln.cancel` and `kiln.clear`, with any of `error`, `spp`, `time` [s] and `density` and what else [`BakeLightmaps`]
+//! has; what it leaves out is as [`NextBake`] says, as for the keys. Bind it to the loopback address: whoever reaches
+//! the port can do anything with the app.
 //!
-//! What moves is lit by irradiance volumes ([`BakeVolumes`]): they come with the lightmaps where the scene has meshes that
-//! take no part in the bake. Boxes are found, or placed as [`ProbeVolume`].
+//! What moves is lit by irradiance volumes ([`BakeVolumes`]): they come with the lightmaps where the scene has meshes
+//! that take no part in the bake. Boxes are found, or placed as [`ProbeVolume`].
 //!
-//! Mark what shall receive a lightmap with [`LightmapReceiver`], what only blocks and reflects with [`LightBlocker`] and
-//! what moves with [`NotBaked`], on the thing or on anything above it; without a receiver anywhere every mesh receives.
-//! An artist marks the same in Blender, by custom properties (docs/blender.md). What a folder of the `kiln` command
-//! holds goes on a scene as [`BakedLightmaps`] beside its root.
+//! Mark what shall receive a lightmap with [`LightmapReceiver`], what only blocks and reflects with [`LightBlocker`]
+//! and what moves with [`NotBaked`], on the thing or on anything above it; without a receiver anywhere every mesh
+//! receives. An artist marks the same in Blender, by custom properties (docs/blender.md). What a folder of the `kiln`
+//! command holds goes on a scene as [`BakedLightmaps`] beside its root.
 //!
-//! A bake shows itself while it runs ([`BakeView`]): the whole map in coarse first, then finished texels, those near the
-//! camera before those far off. Bake again after moving a lamp or adding a chair, and only what that reaches is measured
-//! ([`BakeScope`]).
+//! A bake shows itself while it runs ([`BakeView`]): the whole map in coarse first, then finished texels, those near
+//! the camera before those far off. Bake again after moving a lamp or adding a chair, and only what that reaches is
+//! measured ([`BakeScope`]).
 //!
 //! What is left out is named. A skinned or morphed mesh takes part only where a mark asks for it: it then blocks light
 //! in the pose in which it stands. Things on other render layers than [`SceneSettings::layers`] (0) take no part. Light

@@ -1,5 +1,5 @@
-//! What an artist writes on things in Blender: from the custom properties in a glTF file to what a bake takes, in a game,
-//! on the command line, and in a game that only shows a bake.
+//! What an artist writes on things in Blender: from the custom properties in a glTF file to what a bake takes, in a
+//! game, on the command line, and in a game that only shows a bake.
 
 use super::*;
 use bevy::light::{DirectionalLight, PointLight};
@@ -171,8 +171,8 @@ fn lights_have_the_mode_that_is_written_on_them_or_on_their_object() {
     assert_eq!(said(&found), [""; 0]);
 }
 
-/// The command line writes a folder, and a game that knows nothing of the bake shows it: a light of which nothing is left
-/// to real time must be off there too.
+/// The command line writes a folder, and a game that knows nothing of the bake shows it: a light of which nothing is
+/// left to real time must be off there too.
 #[test]
 fn a_shipped_game_turns_off_what_is_only_baked() {
     let light = json!({ "KHR_lights_punctual": { "light": 0 } });

@@ -272,16 +272,11 @@ fn what_is_hidden_is_named_by_what_hides_it() {
     assert_eq!(names(&found), ["cube", "wing/sign"]);
     assert_eq!(found.scene.lights.len(), 0);
     assert!(!found.has_movers);
-    let rest = "show it while baking if it is a part of the scene";
-    assert_eq!(
-        said(&found),
-        [
-            format!(
-                "\"lamp\" is hidden (Visibility), so it is left out with what is below it (1 mesh or light in all); {rest}"
-            ),
-            format!(
-                "\"wing\" is hidden (Visibility), so it is left out with what is below it (2 meshes and lights in all); {rest}"
-            ),
-        ]
-    );
+    let sentence = |name: &str, what: &str| {
+        format!(
+            "\"{name}\" is hidden (Visibility), so it is left out with what is below it ({what} in all); show it while \
+             baking if it is a part of the scene"
+        )
+    };
+    assert_eq!(said(&found), [sentence("lamp", "1 mesh or light"), sentence("wing", "2 meshes and lights")]);
 }

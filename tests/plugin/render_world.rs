@@ -170,7 +170,7 @@ fn a_file_that_is_gone_or_has_changed_is_named() {
     run_until(&mut app, "the end", |world| world.resource::<BakeStatus>().running().is_none());
     let outcome = app.world().resource::<BakeStatus>().outcomes().next().unwrap();
     let said = sentences(&outcome.warnings);
-    let changed = "is in the render world only, and its file has something else by now, or is read with settings of its \
-         own, so it is left out";
+    let changed = "is in the render world only, and its file has something else by now, or is read with settings \
+        of its own, so it is left out";
     assert_eq!(said.iter().filter(|sentence| sentence.contains(changed)).count(), 2, "{said:?}");
 }

@@ -5,8 +5,8 @@ use super::markers::{LightBlocker, LightmapDensity, LightmapReceiver, NotBaked, 
 use crate::plugin::display::KilnExtras;
 use bevy::prelude::*;
 
-/// Side of the box of an object of scale 1 [m]: Blender draws an Empty of the kind Cube from -1 to 1, and its first cube
-/// is as large.
+/// Side of the box of an object of scale 1 [m]: Blender draws an Empty of the kind Cube from -1 to 1, and its first
+/// cube is as large.
 const BOX: f32 = 2.0;
 
 /// Marks what has been read since the last frame.

@@ -9,8 +9,8 @@ use bevy::prelude::*;
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility)]
 pub struct LightmapReceiver {
-    /// Texels per metre of its surface in the world; `None` for that of the nearest [`LightmapDensity`], or else for the
-    /// bake's own.
+    /// Texels per metre of its surface in the world; `None` for that of the nearest [`LightmapDensity`], or else for
+    /// the bake's own.
     pub density: Option<f32>,
 }
 
@@ -34,8 +34,9 @@ pub struct NotBaked;
 #[reflect(Component, Debug, PartialEq, Clone)]
 pub struct LightmapDensity(pub f32);
 
-/// The box of an irradiance volume: a cube of side 1 under this entity's transform, so that its scale is the size of the
-/// box [m]. Where any is placed, volumes are baked there and nowhere else. Of boxes that overlap the smallest counts.
+/// The box of an irradiance volume: a cube of side 1 under this entity's transform, so that its scale is the size of
+/// the box [m]. Where any is placed, volumes are baked there and nowhere else. Of boxes that overlap the smallest
+/// counts.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility)]

@@ -15,8 +15,8 @@ pub trait BakedMaterialApp {
     /// through and glows as that `StandardMaterial` would, and gets a lightmap.
     ///
     /// A lightmap shows where the shader adds it, as all do that end in Bevy's own, such as those of an
-    /// `ExtendedMaterial` of the `StandardMaterial`; mark what has a shader that adds none as a `LightBlocker`. A shipped
-    /// game says the same: there it lets lightmaps go on these materials.
+    /// `ExtendedMaterial` of the `StandardMaterial`; mark what has a shader that adds none as a `LightBlocker`. A
+    /// shipped game says the same: there it lets lightmaps go on these materials.
     ///
     /// ```
     /// use bevy::pbr::{ExtendedMaterial, Material, MaterialExtension};

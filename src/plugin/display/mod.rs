@@ -5,11 +5,14 @@ mod attach;
 mod attribute;
 mod extras;
 mod filtering;
+mod fingerprint;
 mod folder;
 mod light_baking;
 mod material;
 mod mute;
+mod out_of_date;
 mod relay;
+mod reload;
 mod stable_path;
 mod volume;
 mod wear;
@@ -30,6 +33,8 @@ pub(crate) use attribute::numbers;
 pub(crate) use extras::{ExtrasFault, KilnExtras, read_extras};
 #[cfg(feature = "bake")]
 pub(crate) use filtering::FilteredBy;
+#[cfg(feature = "bake")]
+pub(crate) use fingerprint::fingerprint;
 #[cfg(feature = "bake")]
 pub(crate) use folder::lightmap_sampler;
 #[cfg(feature = "bake")]
@@ -67,6 +72,7 @@ pub(super) fn plugin(app: &mut App) {
                 attach::attach_pending,
                 wear::forget_copies_of_changed,
                 filtering::follow_filtering.run_if(resource_exists_and_changed::<LightmapFiltering>),
+                reload::heed_reloads,
                 apply::apply_baked_lightmaps,
             )
                 .chain()

@@ -27,13 +27,13 @@ use super::markers::LightmapReceiver;
 use super::settings::SceneSettings;
 use crate::artefact::StableId;
 use crate::bake::{BakeSettings, VolumeBox, VolumeBoxes, VolumeSettings};
-use crate::plugin::display::{ExtrasFault, KilnExtras};
+use crate::plugin::display::{ExtrasFault, KilnExtras, fingerprint};
 use crate::plugin::stable_id;
 use crate::scene::{LightmapRequest, Scene, unique_ids};
 use bevy::asset::{AssetPath, UntypedAssetId};
 use bevy::camera::visibility::{RenderLayers, VisibilityRange};
 use bevy::prelude::*;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// A world as the baker sees it.
 #[derive(Clone, Debug, Default)]
@@ -50,7 +50,10 @@ pub struct Extraction {
     pub has_movers: bool,
     /// Files of what is with the renderer only and may be read again.
     missed: Vec<AssetPath<'static>>,
+    /// Meshes and lights that would take part if they were not hidden.
     hidden: Vec<Entity>,
+    /// Names that several things have, by which a game does not know one of them again.
+    twins: BTreeSet<String>,
     seen: Seen,
 }
 
@@ -98,6 +101,8 @@ pub fn extract_scene(world: &mut World, settings: &SceneSettings) -> Extraction 
             Kind::Mesh(request) => mesh::extract(world, &thing, request, settings, &mut out),
             Kind::Light(kind) => light::extract(world, &thing, kind, settings, &mut out),
         }
+        let known_again = fingerprint(world, thing.entity).filter(|_| !out.twins.contains(&thing.name));
+        out.scene.fingerprints.extend(known_again.map(|fingerprint| (thing.id.clone(), fingerprint)));
         out.entities.insert(thing.id, thing.entity);
     }
     environment::extract(world, settings, &mut out);
@@ -146,6 +151,7 @@ fn name_all(world: &World, mut things: Vec<Thing>, out: &mut Extraction) -> Vec<
     });
     for twins in things.chunk_by(|a, b| a.id == b.id).filter(|twins| twins.len() > 1) {
         let id = twins[0].name.clone();
+        out.twins.insert(id.clone());
         out.warnings.push(ExtractionWarning::SameId { id, count: twins.len() });
     }
     let ids = unique_ids(things.iter().map(|thing| thing.id.clone()));

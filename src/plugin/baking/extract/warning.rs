@@ -137,8 +137,8 @@ pub enum ExtractionWarning {
     /// The mesh is a coarser level of detail.
     #[error(
         "mesh \"{name}\" is shown from {metres} m on only (VisibilityRange), so it is left out, as the levels of one \
-         object would shade each other; irradiance volumes light it (BakeVolumes), or let its nearest level be seen from \
-         afar"
+         object would shade each other; irradiance volumes light it (BakeVolumes), or let its nearest level be seen \
+         from afar"
     )]
     DistantLevelOfDetail {
         /// The entity.

@@ -1,12 +1,14 @@
 //! What an artist has written on things in the modelling program: custom properties of Blender, which come as `extras`
-//! in a glTF file. Here they are read where a scene has spawned, and the light mode is put on; what only a bake asks for
-//! stays in [`KilnExtras`].
+//! in a glTF file. Here they are read where a scene has spawned, and the light mode is put on; what only a bake asks
+//! for stays in [`KilnExtras`].
 //!
 //! Bevy's components of that kind are found by their names: whether a game reads glTF at all is up to the game.
 
 mod keys;
 
-pub(crate) use keys::{ExtrasFault, KilnExtras};
+#[cfg(feature = "bake")]
+pub(crate) use keys::ExtrasFault;
+pub(crate) use keys::KilnExtras;
 
 use super::stable_id;
 use bevy::ecs::component::ComponentId;

@@ -1,9 +1,9 @@
 //! Meshes and images whose data Bevy has handed to the renderer (`RenderAssetUsages::RENDER_WORLD`), read a second time
 //! from their files, and let go of after the snapshot. What was made in code has no file and is named.
 //!
-//! The second reading is an asset of its own kind at the same path, so that the game's handles, which Bevy finds by path
-//! and kind, never see it, and nothing of it goes to the renderer. Nobody waits here: [`is_reading`] is asked once per
-//! frame.
+//! The second reading is an asset of its own kind at the same path, so that the game's handles, which Bevy finds by
+//! path and kind, never see it, and nothing of it goes to the renderer. Nobody waits here: [`is_reading`] is asked once
+//! per frame.
 
 mod file;
 
@@ -84,8 +84,8 @@ pub(super) fn mesh<'w>(
     Some(again.and_then(|again| if has_box_of(again, mesh) { Ok(again) } else { Err(NotReread::Changed) }))
 }
 
-/// An image with its texels, wherever they are, as it was loaded: whether its file is read as sRGB and how it is sampled
-/// may be a setting of the game.
+/// An image with its texels, wherever they are, as it was loaded: whether its file is read as sRGB and how it is
+/// sampled may be a setting of the game.
 pub(super) fn image<'w>(
     world: &'w World,
     handle: &Handle<Image>,

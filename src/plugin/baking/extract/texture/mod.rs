@@ -1,5 +1,5 @@
-//! `Image` into textures: each that a material refers to, once. What is compressed in a way that no decoder reads, or no
-//! longer in main memory, becomes a warning, and the material does without it.
+//! `Image` into textures: each that a material refers to, once. What is compressed in a way that no decoder reads, or
+//! no longer in main memory, becomes a warning, and the material does without it.
 
 mod blocks;
 mod formats;
