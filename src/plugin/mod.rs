@@ -52,7 +52,12 @@
 //!
 //! What is left out is named. A skinned or morphed mesh takes part only where a mark asks for it: it then blocks light
 //! in the pose in which it stands. Things on other render layers than [`SceneSettings::layers`] (0) take no part. Light
-//! passes through what has `NotShadowCaster`, which therefore reflects none.
+//! passes through what has `NotShadowCaster`, which therefore reflects none. Of the levels of detail of an object
+//! (`VisibilityRange`) the nearest takes part.
+//!
+//! Meshes and images that Bevy has handed to the renderer alone (`RenderAssetUsages::RENDER_WORLD`) are read again from
+//! their files, before the bake starts and without holding up the game. What was made in code has none: keep it in the
+//! main world as well. So keep meshes without a usable second UV set, or their lightmaps cannot be shown.
 //!
 //! A mesh without a usable second UV set is given one by the bake, which splits it along the borders of its charts.
 //! While the bake is shown, the entity's `Mesh3d` holds such a copy; it gets its own mesh back with `ClearLightmaps` or
