@@ -60,11 +60,12 @@ pub mod prelude {
     pub use crate::plugin::{
         AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakePlanned, BakeProgress, BakeScope,
         BakeStatus, BakeView, BakeVolumes, CancelBake, ClearLightmaps, EmissiveUnit, KilnControl, KilnShortcuts,
-        LightBlocker, LightmapFormat, LightmapLayout, LightmapReceiver, NextBake, PauseBake, PlanBake, ProbeVolume,
-        RangeWindow, ResumeBake, SceneSettings,
+        LightBlocker, LightmapDensity, LightmapFormat, LightmapLayout, LightmapReceiver, NextBake, NotBaked, PauseBake,
+        PlanBake, ProbeVolume, RangeWindow, ResumeBake, SceneSettings,
     };
     pub use crate::plugin::{
-        BakedFolder, BakedLightmaps, BakedVolume, KilnId, KilnPlugin, KilnSystems, LightBaking, LightmapFiltering,
+        BakedFolder, BakedLightmaps, BakedMaterialApp, BakedVolume, KilnId, KilnPlugin, KilnSystems, LightBaking,
+        LightmapFiltering,
     };
     #[cfg(feature = "editor")]
     pub use crate::plugin::{KilnPanel, KilnSelect};

@@ -269,6 +269,48 @@ fn a_scene_of_bevys_own_kind_is_read_and_its_light_without_area_is_named() {
 }
 
 #[test]
+fn the_layers_that_are_asked_for_take_part() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let scene = folder.path().join("lamps.scn.ron");
+    let lamp = |number: u32, layers: &str| {
+        let components = r#""bevy_ecs::name::Name": "lamp NUMBER",
+            "bevy_transform::components::transform::Transform":
+                (translation: (0.0, 1.0, 0.0), rotation: (0.0, 0.0, 0.0, 1.0), scale: (1.0, 1.0, 1.0)),
+            "bevy_light::point_light::PointLight": (
+                color: LinearRgba((red: 1.0, green: 1.0, blue: 1.0, alpha: 1.0)), intensity: 100.0, range: 50.0),"#;
+        let components = components.replace("NUMBER", &number.to_string());
+        format!("{}: (components: {{ {components} {layers} }}),", u32::MAX - number)
+    };
+    let second = r#""bevy_camera::visibility::render_layers::RenderLayers": ([4]),"#;
+    let lamps = [lamp(0, ""), lamp(2, second)].concat();
+    std::fs::write(&scene, format!("(resources: {{}}, entities: {{ {lamps} }})")).unwrap();
+    let points = folder.path().join("points.csv");
+    std::fs::write(&points, "x,y,z,nx,ny,nz\n0,0,0,0,1,0\n").unwrap();
+    let measure = |layers: &[&str]| {
+        let mut command = kiln();
+        command.arg("irradiance").arg(&scene).arg("--points").arg(&points).args(["--no-range", "--spp", "16"]);
+        let output = command.args(layers).output().unwrap();
+        let (stdout, stderr) = (text(&output.stdout), text(&output.stderr));
+        let row = stdout.lines().nth(1).unwrap_or_else(|| panic!("{stderr}")).to_owned();
+        (row.split(',').nth(6).unwrap().parse::<f64>().unwrap(), stderr)
+    };
+    // A point light of 100 lm at 1 m, head on.
+    let one = 100.0 / (4.0 * std::f64::consts::PI);
+    let left_out = |name: &str| format!("\"{name}\" is on render layers that are not baked");
+    for (layers, expected, without) in [
+        (&[][..], one, Some("lamp 2")),
+        (&["--layers", "2"], one, Some("lamp 0")),
+        (&["--layers", "0,2"], 2.0 * one, None),
+    ] {
+        let (found, stderr) = measure(layers);
+        assert!((found - expected).abs() <= 1e-4 * expected, "{layers:?}: {found} is not {expected}");
+        for name in ["lamp 0", "lamp 2"] {
+            assert_eq!(stderr.contains(&left_out(name)), without == Some(name), "{layers:?}: {stderr}");
+        }
+    }
+}
+
+#[test]
 fn a_scene_without_light_is_refused() {
     let (folder, output) = bake_spoilt(|glb| {
         for material in glb.json["materials"].as_array_mut().unwrap() {

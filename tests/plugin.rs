@@ -3,8 +3,12 @@
 
 #[path = "plugin/command.rs"]
 mod command;
+#[path = "plugin/custom_materials.rs"]
+mod custom_materials;
 #[path = "plugin/environments.rs"]
 mod environments;
+#[path = "plugin/extras.rs"]
+mod extras;
 #[path = "plugin/filtering.rs"]
 mod filtering;
 #[allow(dead_code, reason = "the command line's tests use the rest of it")]
@@ -22,6 +26,10 @@ mod live;
 mod materials;
 #[path = "plugin/meshes.rs"]
 mod meshes;
+#[path = "plugin/render_world.rs"]
+mod render_world;
+#[path = "plugin/shipping.rs"]
+mod shipping;
 #[path = "plugin/volumes.rs"]
 mod volumes;
 
@@ -38,7 +46,7 @@ use bevy::prelude::*;
 use bevy::world_serialization::WorldAssetRoot;
 use bevy_kiln::bake::bake_lightmap;
 use bevy_kiln::plugin::windowless::WindowlessPlugins;
-use bevy_kiln::plugin::{BakeId, Extraction, KilnEnding, KilnWork, extract_scene};
+use bevy_kiln::plugin::{AppliedLightmaps, BakeId, Extraction, KilnEnding, KilnWork, extract_scene};
 use bevy_kiln::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

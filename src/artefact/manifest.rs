@@ -1,7 +1,8 @@
 //! `kiln.ron`: which texture belongs on which object, in which unit, and how it was made.
 
-use super::StableId;
+use super::{Fingerprint, StableId};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use thiserror::Error;
 
 /// The manifest's file name inside a baked folder.
@@ -34,6 +35,10 @@ pub struct Manifest {
     /// Irradiance volumes. Since version 3.
     #[serde(default)]
     pub volumes: Vec<Volume>,
+    /// What each thing that took part was like. Empty in files that were written before it was noted;
+    /// older readers pass over it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub things: BTreeMap<StableId, Fingerprint>,
 }
 
 /// One irradiance volume.
@@ -173,6 +178,7 @@ mod tests {
                 size: [4.0, 3.0, 5.0],
                 falloff: 0.0,
             }],
+            things: [(StableId::new("lamp"), Fingerprint::new([0.1; 12], "a lamp"))].into(),
         }
     }
 
@@ -204,7 +210,8 @@ mod tests {
             placements: [(id: "a/c", page: 0, uv_min: (0.0, 0.0), uv_max: (0.25, 1.0))],
             baked_lights: [(id: "lamp")],
         )"#;
-        let mut expected = Manifest { version: 1, meshes: None, volumes: Vec::new(), ..manifest() };
+        let empty = Manifest { version: 1, meshes: None, volumes: Vec::new(), things: BTreeMap::new(), ..manifest() };
+        let mut expected = empty;
         expected.placements.remove(0);
         assert_eq!(Manifest::from_ron(text), Ok(expected));
     }

@@ -177,6 +177,7 @@ pub(super) fn bake<'a>(
         denoised,
         seams,
         intervals: Intervals::of(&work.results, until),
+        fingerprints: scene.fingerprints.clone(),
         kept: earlier.map(|_| tiles.iter().zip(&kept).map(is_kept).sum()),
         ..BakeReport::of(&work, clock.elapsed(), &settings.transport, warnings).with(first_pass)
     };

@@ -4,8 +4,10 @@ use super::gather::{Estimate, clamped_share, relative_error};
 use super::tiles::{ErrorTarget, Until};
 use super::workers::Work;
 use super::{BakeWarning, DARK, FirstPass};
+use crate::artefact::{Fingerprint, StableId};
 use crate::math::luminance;
 use crate::trace::{ForcedEffects, Transport};
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// What a bake did, in numbers.
@@ -52,6 +54,8 @@ pub struct BakeReport {
     pub clamped: u64,
     /// What was done about seams; `None` where no charts meet on a smooth surface.
     pub seams: Option<SeamReport>,
+    /// [`Scene::fingerprints`](crate::scene::Scene::fingerprints) of what was baked.
+    pub fingerprints: BTreeMap<StableId, Fingerprint>,
     /// What was left out, and what to do about it.
     pub warnings: Vec<BakeWarning>,
 }
@@ -195,6 +199,7 @@ impl BakeReport {
             unwrapped: 0,
             clamped: 0,
             seams: None,
+            fingerprints: BTreeMap::new(),
             warnings: warnings.chain(BakeWarning::of_paths(&work.results)).collect(),
         }
     }

@@ -152,6 +152,7 @@ fn manifest(lightmap: &Lightmap, volumes: &[Volume], scene_name: &str, format: T
         meshes: (!lightmap.meshes.is_empty()).then(|| MESHES_FILE.to_owned()),
         baked_lights: lightmap.baked_lights.iter().map(|id| BakedLight { id: id.clone() }).collect(),
         volumes: volumes.iter().enumerate().map(|(index, volume)| entry(index, volume)).collect(),
+        things: lightmap.report.fingerprints.clone(),
     }
 }
 

@@ -27,9 +27,9 @@ pub use material::{Alpha, Interior, Material, NormalEncoding, NormalMap, Scatter
 pub use mesh::{Indices, Instance, LightmapRequest, Mesh, Topology};
 pub use texture::{Filter, Texels, Texture, TextureRef, UvChannel, Wrap};
 
-use crate::artefact::StableId;
+use crate::artefact::{Fingerprint, StableId};
 use glam::Vec3;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Everything that light meets, and everything that gives light.
 #[derive(Clone, Debug, Default)]
@@ -48,6 +48,8 @@ pub struct Scene {
     pub indirect_only: BTreeSet<StableId>,
     /// Ids of those that are off in real time: irradiance volumes hold their direct light too.
     pub off_in_real_time: BTreeSet<StableId>,
+    /// What its owner wants to know its instances and lights by later: a bake passes it on and looks at none of it.
+    pub fingerprints: BTreeMap<StableId, Fingerprint>,
     /// Radiance of a sky that is the same in every direction [cd/m²]. Black is no sky.
     pub sky_radiance: Vec3,
     /// A picture of the sky, on top of `sky_radiance`.

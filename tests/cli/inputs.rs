@@ -77,6 +77,7 @@ fn numbers_that_are_none_get_a_sentence() {
         (["--threads", "0"], "leave it out for all cores"),
         (["--seed", "-1"], "a whole number from 0"),
         (["--max-bounces", "-1"], "or none for no cap"),
+        (["--layers", "two"], "with commas between: 0,2"),
     ] {
         let output = run(&["plan", scene, arguments[0], arguments[1]]);
         assert_fails(&output, 2, sentence);

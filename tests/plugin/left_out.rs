@@ -1,7 +1,7 @@
 //! What a scene leaves out or freezes: skinned and morphed meshes, other render layers, Bevy's shadow flags.
 
 use super::{app, data};
-use bevy::camera::visibility::RenderLayers;
+use bevy::camera::visibility::{RenderLayers, VisibilityRange};
 use bevy::light::{NotShadowCaster, NotShadowReceiver, PointLight, TransmittedShadowReceiver};
 use bevy::mesh::VertexAttributeValues;
 use bevy::mesh::morph::{MeshMorphWeights, MorphAttributes, MorphWeights};
@@ -227,4 +227,56 @@ fn light_passes_what_casts_no_shadow_and_the_other_flags_are_named() {
              component",
         ]
     );
+}
+
+#[test]
+fn of_the_levels_of_an_object_the_nearest_is_baked_and_the_others_are_named() {
+    let found = extract(|world| {
+        let from = [0.0..0.0, 20.0..25.0, 70.0..75.0];
+        let to = [20.0..25.0, 70.0..75.0, 150.0..160.0];
+        for ((name, start_margin), end_margin) in ["near", "far", "farther"].into_iter().zip(from).zip(to) {
+            let level = thing(world, name, Mesh::from(Cuboid::default()));
+            world.entity_mut(level).insert(VisibilityRange { start_margin, end_margin, use_aabb: false });
+        }
+    });
+    assert_eq!(names(&found), ["cube", "near"]);
+    assert!(instance(&found, "near").lightmap.is_some());
+    assert!(found.has_movers, "without a lightmap they need a volume");
+    let sentence = |name: &str, metres: u32| {
+        format!(
+            "mesh \"{name}\" is shown from {metres} m on only (VisibilityRange), so it is left out, as the levels of \
+             one object would shade each other; irradiance volumes light it (BakeVolumes), or let its nearest level be \
+             seen from afar"
+        )
+    };
+    assert_eq!(said(&found), [sentence("far", 20), sentence("farther", 70)]);
+}
+
+#[test]
+fn what_is_hidden_is_named_by_what_hides_it() {
+    let found = extract(|world| {
+        let wing = world.spawn((Name::new("wing"), Transform::default(), Visibility::Hidden)).id();
+        for name in ["table", "chair"] {
+            let entity = thing(world, name, Mesh::from(Cuboid::default()));
+            world.entity_mut(entity).insert(ChildOf(wing));
+        }
+        // What is to be seen whatever is above it takes part.
+        let sign = thing(world, "sign", Mesh::from(Cuboid::default()));
+        world.entity_mut(sign).insert((ChildOf(wing), Visibility::Visible));
+        world.spawn((Name::new("lamp"), PointLight::default(), Visibility::Hidden));
+        // Nobody asks for these.
+        world.spawn((Name::new("torch"), PointLight::default(), Visibility::Hidden, LightBaking::RealTime));
+        let mover = thing(world, "mover", Mesh::from(Cuboid::default()));
+        world.entity_mut(mover).insert((NotBaked, Visibility::Hidden));
+    });
+    assert_eq!(names(&found), ["cube", "wing/sign"]);
+    assert_eq!(found.scene.lights.len(), 0);
+    assert!(!found.has_movers);
+    let sentence = |name: &str, what: &str| {
+        format!(
+            "\"{name}\" is hidden (Visibility), so it is left out with what is below it ({what} in all); show it while \
+             baking if it is a part of the scene"
+        )
+    };
+    assert_eq!(said(&found), [sentence("lamp", "1 mesh or light"), sentence("wing", "2 meshes and lights")]);
 }

@@ -179,6 +179,7 @@ impl<'a> LaidOut<'a> {
             materials: scene.materials.clone(),
             indirect_only: scene.indirect_only.clone(),
             off_in_real_time: scene.off_in_real_time.clone(),
+            fingerprints: scene.fingerprints.clone(),
             textures: scene.textures.clone(),
             lights: scene.lights.clone(),
             environment: scene.environment.clone(),

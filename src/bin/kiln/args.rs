@@ -1,6 +1,7 @@
 //! The command line as data.
 
 use crate::parse;
+use bevy::camera::visibility::RenderLayers;
 use bevy_kiln::bake::{Goal, LaterBounces};
 use bevy_kiln::output::{OutputFormat, ToneCurve};
 use bevy_kiln::plugin::EmissiveUnit;
@@ -55,6 +56,9 @@ pub(crate) struct SceneArgs {
     /// A picture of the sky: equirectangular, radiance in cd/m², +Y up, +X in the middle
     #[arg(long, value_name = "FILE.hdr|.exr")]
     pub(crate) environment: Option<PathBuf>,
+    /// Which render layers take part
+    #[arg(long, value_name = "N,...", default_value = "0", value_parser = parse::layers)]
+    pub(crate) layers: RenderLayers,
     /// Let lights shine beyond their range
     #[arg(long)]
     pub(crate) no_range: bool,

@@ -1,6 +1,7 @@
 //! Values of options from text.
 
 use crate::args::Bounces;
+use bevy::camera::visibility::RenderLayers;
 use bevy_kiln::plugin::EmissiveUnit;
 use bevy_kiln::trace::Effect;
 use glam::Vec3;
@@ -86,6 +87,16 @@ pub(crate) fn effect(text: &str) -> Result<Effect, String> {
     })
 }
 
+/// Bevy keeps a bit for each layer up to the last one, so that there is an end to them here.
+const LAST_LAYER: usize = 1023;
+
+pub(crate) fn layers(text: &str) -> Result<RenderLayers, String> {
+    let layer = |part: &str| part.trim().parse().ok().filter(|&layer: &usize| layer <= LAST_LAYER);
+    let layers: Option<Vec<usize>> = text.split(',').map(layer).collect();
+    let layers = layers.ok_or_else(|| format!("give whole numbers from 0 to {LAST_LAYER} with commas between: 0,2"))?;
+    Ok(RenderLayers::from_layers(&layers))
+}
+
 pub(crate) fn fov(text: &str) -> Result<f32, String> {
     let degrees = finite(text).filter(|&degrees| degrees > 0.0 && degrees < 180.0);
     degrees.ok_or_else(|| "give an angle between 0 and 180 degrees".to_owned())
@@ -127,6 +138,8 @@ mod tests {
         assert_eq!(effect("cut-outs"), Ok(Effect::CutOuts));
         assert!(effect("magic").is_err_and(|error| error.contains("clear-panes")));
         assert!(clamp("0").is_err() && clamp("3") == Ok(3.0));
+        assert_eq!(layers("0, 2"), Ok(RenderLayers::from_layers(&[2, 0])));
+        assert!(["", "-1", "1024", "0;2", "0,,2"].into_iter().all(|text| layers(text).is_err()));
         assert!(fov("180").is_err() && fov("45").is_ok());
     }
 }

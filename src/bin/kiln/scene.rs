@@ -4,7 +4,7 @@ use crate::args::{EstimatorArg, GoalArgs, LayoutArg, LayoutArgs, SceneArgs};
 use crate::failure::Failure;
 use bevy_kiln::bake::{BakeSettings, CancelToken, Layout};
 use bevy_kiln::plugin::windowless::{load_environment, open_scene, unread_parts};
-use bevy_kiln::plugin::{Extraction, RangeWindow, SceneSettings, extract_scene};
+use bevy_kiln::plugin::{AmbientMode, Extraction, RangeWindow, SceneSettings, extract_scene};
 use bevy_kiln::trace::{Estimator, ForcedEffects, Sharing, Transport};
 use glam::Vec3;
 
@@ -18,10 +18,11 @@ pub(crate) fn open(args: &SceneArgs, cancel: &CancelToken) -> Result<Extraction,
     }
     let settings = SceneSettings {
         emissive: args.emissive,
+        ambient: AmbientMode::Ignore,
         range: if args.no_range { RangeWindow::Ignore } else { RangeWindow::AsDisplayed },
         sky_radiance: args.sky.unwrap_or(Vec3::ZERO),
         environment,
-        ..SceneSettings::default()
+        layers: args.layers.clone(),
     };
     let mut extraction = extract_scene(app.world_mut(), &settings);
     extraction.warnings.extend(unread_parts(&app));

@@ -7,7 +7,7 @@ use super::events::{
     BakeFailed, BakeFinished, BakeLightmaps, BakePlanned, BakeProgress, BakeScope, BakeView, CancelBake,
     ClearLightmaps, LightmapFormat, PauseBake, PlanBake, ResumeBake,
 };
-use super::extract::{Extraction, extract_scene};
+use super::extract::{Extraction, extract_scene, reread};
 use super::live::LiveView;
 use super::status::{BakeId, BakeStatus, KilnEnding, KilnOutcome, KilnWork};
 use super::warning::{KilnWarning, Names};
@@ -141,13 +141,21 @@ pub(super) fn ask_clear(_: On<ClearLightmaps>, mut kiln: KilnControl) {
     kiln.clear();
 }
 
-/// Takes the snapshot of a job that was asked for and starts it.
+/// Takes the snapshot of a job that was asked for and starts it; in a later frame if files must be read again for it.
 pub(super) fn start(world: &mut World) {
     let Some(request) = world.resource_mut::<Kiln>().asked.take() else { return };
     if request.cancel.is_cancelled() {
+        reread::forget(world);
         return fail(world, request.id, &BakeError::Cancelled, Vec::new());
     }
+    if reread::is_reading(world) {
+        return world.resource_mut::<Kiln>().ask(request);
+    }
     let extraction = extract_scene(world, &request.settings.scene);
+    if reread::ask(world, &extraction) {
+        return world.resource_mut::<Kiln>().ask(request);
+    }
+    reread::forget(world);
     let names = Names::new(world, &extraction);
     let view = match request.work {
         KilnWork::Plan => BakeView::WhenDone,

@@ -9,7 +9,8 @@ use bevy::prelude::*;
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility)]
 pub struct LightmapReceiver {
-    /// Texels per metre of its surface in the world; `None` for the bake's own.
+    /// Texels per metre of its surface in the world; `None` for that of the nearest [`LightmapDensity`], or else for
+    /// the bake's own.
     pub density: Option<f32>,
 }
 
@@ -20,8 +21,22 @@ pub struct LightmapReceiver {
 #[require(Transform, Visibility)]
 pub struct LightBlocker;
 
-/// The box of an irradiance volume: a cube of side 1 under this entity's transform, so that its scale is the size of the
-/// box [m]. Where any is placed, volumes are baked there and nowhere else. Of boxes that overlap the smallest counts.
+/// What is on or below this entity takes no part in bakes, as a thing that moves should not. The nearest mark above a
+/// mesh holds.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
+#[require(Transform, Visibility)]
+pub struct NotBaked;
+
+/// Texels per metre of surface in the world, for what on or below this entity gets a lightmap. The nearest one holds.
+/// Other than [`LightmapReceiver`] it says nothing of what takes part.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component, Debug, PartialEq, Clone)]
+pub struct LightmapDensity(pub f32);
+
+/// The box of an irradiance volume: a cube of side 1 under this entity's transform, so that its scale is the size of
+/// the box [m]. Where any is placed, volumes are baked there and nowhere else. Of boxes that overlap the smallest
+/// counts.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, Visibility)]

@@ -3,6 +3,7 @@
 mod control;
 mod events;
 mod extract;
+mod extras;
 mod job;
 mod live;
 mod markers;
@@ -17,22 +18,27 @@ pub use events::{
     BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakePlanned, BakeProgress, BakeScope, BakeView, BakeVolumes,
     CancelBake, ClearLightmaps, LightmapFormat, LightmapLayout, PauseBake, PlanBake, ResumeBake,
 };
-pub use extract::{Extraction, ExtractionWarning, Unreadable, Unsimulated, extract_scene};
-pub use markers::{LightBlocker, LightmapReceiver, ProbeVolume};
+pub use extract::{Extraction, ExtractionWarning, NotReread, Unreadable, Unsimulated, extract_scene};
+pub use markers::{LightBlocker, LightmapDensity, LightmapReceiver, NotBaked, ProbeVolume};
 pub use settings::{AmbientMode, EmissiveUnit, RangeWindow, SceneSettings};
 pub use status::{BakeId, BakeStatus, KilnEnding, KilnOutcome, KilnWork, RunningJob};
 pub use warning::KilnWarning;
 
 use super::KilnSystems;
+use bevy::asset::AssetApp;
 use bevy::prelude::*;
 
 pub(super) fn plugin(app: &mut App) {
-    app.init_resource::<job::Kiln>()
+    app.init_asset::<extract::reread::SecondReading>()
+        .register_asset_loader(extract::reread::FileLoader)
+        .init_resource::<job::Kiln>()
         .init_resource::<BakeStatus>()
         .init_resource::<NextBake>()
         .register_type::<NextBake>()
         .register_type::<LightmapReceiver>()
         .register_type::<LightBlocker>()
+        .register_type::<NotBaked>()
+        .register_type::<LightmapDensity>()
         .register_type::<ProbeVolume>()
         .register_type::<BakeLightmaps>()
         .register_type::<PlanBake>()
@@ -49,5 +55,6 @@ pub(super) fn plugin(app: &mut App) {
         .add_observer(job::cancel)
         .add_observer(job::ask_clear)
         .add_systems(PreUpdate, job::look_after.in_set(KilnSystems::Display))
+        .add_systems(PostUpdate, extras::mark.in_set(KilnSystems::Marks).after(super::display::read_extras))
         .add_systems(Last, job::start.in_set(KilnSystems::Snapshot));
 }

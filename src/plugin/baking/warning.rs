@@ -4,6 +4,7 @@
 //! entity that had it when the snapshot was taken.
 
 use super::extract::Extraction;
+use crate::plugin::display::KilnExtras;
 use crate::plugin::stable_id;
 use bevy::light::RectLight;
 use bevy::prelude::*;
@@ -29,12 +30,13 @@ impl Display for KilnWarning {
 /// The entities of a world by their stable ids.
 pub(super) struct Names(HashMap<String, Entity>);
 
-type MeshOrLight = Or<(With<Mesh3d>, With<PointLight>, With<SpotLight>, With<DirectionalLight>, With<RectLight>)>;
+type Nameable =
+    Or<(With<Mesh3d>, With<PointLight>, With<SpotLight>, With<DirectionalLight>, With<RectLight>, With<KilnExtras>)>;
 
 impl Names {
     /// Those of everything that a snapshot may name, also of what it left out.
     pub(super) fn new(world: &mut World, extraction: &Extraction) -> Self {
-        let mut query = world.query_filtered::<Entity, MeshOrLight>();
+        let mut query = world.query_filtered::<Entity, Nameable>();
         let named = query.iter(world).map(|entity| (stable_id(world, entity).as_str().to_owned(), entity));
         let mut names: HashMap<String, Entity> = named.collect();
         // Of two with the same id, the one that takes part.

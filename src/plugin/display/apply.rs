@@ -2,17 +2,20 @@
 
 use super::attach::{Shown, attach, detach};
 use super::filtering::FilteredBy;
+use super::fingerprint::fingerprint;
 use super::mute::{MutedLight, mute_light, unmute_light};
+use super::out_of_date::sentence;
 use super::volume::{ShownVolume, despawn_volumes, spawn_volume};
 use super::{BakedFolder, stable_id};
-use crate::artefact::StableId;
+use crate::artefact::{Change, StableId};
 use bevy::light::RectLight;
 use bevy::pbr::Lightmap;
 use bevy::prelude::*;
 use std::collections::{HashMap, HashSet};
 
 /// Lights what is below this entity with a baked folder. Put it beside the scene's root component; it finds the
-/// objects by their [`StableId`] as they spawn, and mutes the lights that the textures hold.
+/// objects by their [`StableId`] as they spawn, and mutes the lights that the textures hold. A folder that is read anew
+/// while the game runs is shown anew; another one takes the place of the one before once it is there.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default, Debug, Clone)]
 #[require(Transform, Visibility, AppliedLightmaps)]
@@ -23,8 +26,13 @@ pub struct BakedLightmaps(pub Handle<BakedFolder>);
 pub struct AppliedLightmaps {
     folder: Option<AssetId<BakedFolder>>,
     done: HashSet<Entity>,
+    /// What shows another folder, or this one as it was before it was read again, until this one is there.
+    before: HashSet<Entity>,
     /// What was put into the world: irradiance volumes.
     volumes: Vec<Entity>,
+    /// What was compared with how it was at the bake.
+    compared: HashSet<Entity>,
+    changed: Vec<StableId>,
 }
 
 impl AppliedLightmaps {
@@ -36,6 +44,25 @@ impl AppliedLightmaps {
     /// Whether none has.
     pub fn is_empty(&self) -> bool {
         self.done.is_empty()
+    }
+
+    /// What is not as it was when it was baked: elsewhere, of another material, or shining otherwise. Things that are
+    /// new or gone, and what is in pictures and meshes, are not compared.
+    pub fn changed_since_bake(&self) -> &[StableId] {
+        &self.changed
+    }
+
+    /// Whether it is of this folder.
+    pub(super) fn is_of(&self, folder: AssetId<BakedFolder>) -> bool {
+        self.folder == Some(folder)
+    }
+
+    /// Has everything put on anew, in place of what is there until then.
+    pub(super) fn put_on_again(&mut self) {
+        self.before.extend(self.done.drain());
+        self.folder = None;
+        self.compared.clear();
+        self.changed.clear();
     }
 }
 
@@ -52,15 +79,24 @@ pub(crate) fn apply_baked_lightmaps(world: &mut World) {
         roots.iter(world).map(|(entity, baked, applied)| (entity, baked.0.clone(), applied.clone())).collect();
     for (root, folder, mut applied) in roots {
         if applied.folder.is_some_and(|before| before != folder.id()) {
-            undo(world, &mut applied);
+            applied.put_on_again();
         }
-        let jobs = find_jobs(world, root, &folder, &applied);
-        let volumes = if applied.folder.is_none() { volumes_of(world, &folder) } else { Vec::new() };
-        if jobs.is_empty() && volumes.is_empty() && applied.folder.is_none() {
+        let is_new = applied.folder.is_none() && is_loaded(world, &folder);
+        let Found { jobs, compared, changed } = find(world, root, &folder, &applied);
+        if jobs.is_empty() && compared.is_empty() && !is_new {
             continue;
         }
-        applied.folder = Some(folder.id());
-        applied.volumes.extend(volumes.into_iter().map(|volume| spawn_volume(world, volume)));
+        if is_new {
+            despawn_volumes(world, &mut applied.volumes);
+            let volumes = volumes_of(world, &folder);
+            applied.volumes.extend(volumes.into_iter().map(|volume| spawn_volume(world, volume)));
+            applied.folder = Some(folder.id());
+        }
+        if applied.changed.is_empty() && !changed.is_empty() {
+            warn!("{}", sentence(&changed));
+        }
+        applied.changed.extend(changed.into_iter().map(|(id, _)| id));
+        applied.compared.extend(compared);
         for (entity, job) in jobs {
             match job {
                 Job::Attach(shown) => {
@@ -70,9 +106,14 @@ pub(crate) fn apply_baked_lightmaps(world: &mut World) {
                 }
                 Job::Mute => mute_light(&mut world.entity_mut(entity)),
             }
+            applied.before.remove(&entity);
             applied.done.insert(entity);
         }
+        for entity in std::mem::take(&mut applied.before) {
+            take_off(world, entity);
+        }
         applied.done.retain(|&entity| world.get_entity(entity).is_ok());
+        applied.compared.retain(|&entity| world.get_entity(entity).is_ok());
         if let Ok(mut entity) = world.get_entity_mut(root) {
             entity.insert(applied);
         }
@@ -91,16 +132,25 @@ pub(crate) fn take_off_with_component(removed: On<Remove, BakedLightmaps>, mut c
 }
 
 fn undo(world: &mut World, applied: &mut AppliedLightmaps) {
-    for entity in applied.done.drain() {
-        let Ok(mut found) = world.get_entity_mut(entity) else { continue };
-        if found.contains::<MutedLight>() {
-            unmute_light(&mut found);
-        } else {
-            detach(world, entity);
-        }
+    for entity in applied.done.drain().chain(applied.before.drain()) {
+        take_off(world, entity);
     }
     despawn_volumes(world, &mut applied.volumes);
     applied.folder = None;
+}
+
+/// Gives an entity back as it was.
+fn take_off(world: &mut World, entity: Entity) {
+    let Ok(mut found) = world.get_entity_mut(entity) else { return };
+    if found.contains::<MutedLight>() {
+        unmute_light(&mut found);
+    } else {
+        detach(world, entity);
+    }
+}
+
+fn is_loaded(world: &World, folder: &Handle<BakedFolder>) -> bool {
+    world.get_resource::<Assets<BakedFolder>>().is_some_and(|folders| folders.contains(folder))
 }
 
 /// The irradiance volumes of a folder, once it is loaded.
@@ -118,17 +168,21 @@ fn volumes_of(world: &World, folder: &Handle<BakedFolder>) -> Vec<ShownVolume> {
     shown.collect()
 }
 
-fn find_jobs(
-    world: &World,
-    root: Entity,
-    folder: &Handle<BakedFolder>,
-    applied: &AppliedLightmaps,
-) -> Vec<(Entity, Job)> {
+/// What there is to do below a root, and what was found on the way.
+#[derive(Default)]
+struct Found {
+    jobs: Vec<(Entity, Job)>,
+    compared: Vec<Entity>,
+    changed: Vec<(StableId, Change)>,
+}
+
+fn find(world: &World, root: Entity, folder: &Handle<BakedFolder>, applied: &AppliedLightmaps) -> Found {
+    let mut found = Found::default();
     let Some(folder) = world.get_resource::<Assets<BakedFolder>>().and_then(|folders| folders.get(folder)) else {
-        return Vec::new();
+        return found;
     };
     if applied.done.len() >= folder.manifest.placements.len() + folder.manifest.baked_lights.len() {
-        return Vec::new();
+        return found;
     }
     let placements: HashMap<&StableId, Shown> = folder
         .manifest
@@ -145,24 +199,36 @@ fn find_jobs(
         })
         .collect();
     let lights: HashSet<&StableId> = folder.manifest.baked_lights.iter().map(|light| &light.id).collect();
-    let mut jobs = Vec::new();
     let mut below = vec![root];
     while let Some(entity) = below.pop() {
         below.extend(world.get::<Children>(entity).into_iter().flatten());
+        let (mesh, is_light) = (world.get::<Mesh3d>(entity), is_light(world, entity));
+        let is_known = applied.done.contains(&entity) && applied.compared.contains(&entity);
+        if is_known || (mesh.is_none() && !is_light) {
+            continue;
+        }
+        let id = stable_id(world, entity);
+        let is_mesh_loaded =
+            mesh.is_none_or(|mesh| world.get_resource::<Assets<Mesh>>().is_some_and(|meshes| meshes.contains(&mesh.0)));
+        if !applied.compared.contains(&entity)
+            && let Some(now) = fingerprint(world, entity)
+        {
+            let change = folder.manifest.things.get(&id).and_then(|before| before.change_to(&now));
+            found.changed.extend(change.map(|change| (id.clone(), change)));
+            found.compared.push(entity);
+        }
         if applied.done.contains(&entity) {
             continue;
         }
-        if let Some(mesh) = world.get::<Mesh3d>(entity) {
-            let is_loaded = world.get_resource::<Assets<Mesh>>().is_some_and(|meshes| meshes.contains(&mesh.0));
-            if let Some(shown) = placements.get(&stable_id(world, entity)).filter(|_| is_loaded) {
-                jobs.push((entity, Job::Attach(shown.clone())));
-            }
+        if let Some(shown) = placements.get(&id).filter(|_| mesh.is_some() && is_mesh_loaded) {
+            found.jobs.push((entity, Job::Attach(shown.clone())));
         }
-        if is_light(world, entity) && lights.contains(&stable_id(world, entity)) {
-            jobs.push((entity, Job::Mute));
+        if is_light && lights.contains(&id) {
+            found.jobs.push((entity, Job::Mute));
         }
     }
-    jobs
+    found.changed.sort_by(|(a, _), (b, _)| a.cmp(b));
+    found
 }
 
 fn is_light(world: &World, entity: Entity) -> bool {

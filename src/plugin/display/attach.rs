@@ -6,8 +6,10 @@
 //! changed materials.
 
 use super::filtering::{FilteredBy, FollowsFiltering, LightmapFiltering};
+use super::material::{shows_lightmaps, touch_materials};
 use super::relay::CannotLayOut;
 use super::wear::{self, SharedLayout};
+use bevy::ecs::world::EntityRef;
 use bevy::mesh::MeshAccessError;
 use bevy::pbr::Lightmap;
 use bevy::prelude::*;
@@ -38,7 +40,7 @@ pub(crate) struct PendingLightmap {
 pub(crate) enum CannotAttach {
     /// It is gone.
     Despawned,
-    /// It has no `Mesh3d` with a `StandardMaterial`.
+    /// It has no `Mesh3d`, or with a material that is not known to show lightmaps.
     NoStandardMaterial,
     /// Its mesh is not there yet.
     NotLoaded,
@@ -56,7 +58,7 @@ impl std::fmt::Display for CannotAttach {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Despawned => "is no longer there",
-            Self::NoStandardMaterial => "has no StandardMaterial",
+            Self::NoStandardMaterial => "has neither a StandardMaterial nor one that add_baked_material has made known",
             Self::NotLoaded => "has a mesh that is not loaded",
             Self::RenderWorldOnly => {
                 "has a mesh that is in the render world only (load it with RenderAssetUsages::MAIN_WORLD as well)"
@@ -109,7 +111,7 @@ fn put_on(entity: &mut EntityWorldMut, lightmap: Lightmap) {
     } else {
         entity.insert(lightmap);
     }
-    touch_material(entity);
+    touch_materials(entity);
 }
 
 /// Puts an entity's lightmap on again if it is filtered otherwise.
@@ -127,7 +129,7 @@ pub(crate) fn detach(world: &mut World, entity: Entity) {
     if let Ok(mut entity) = world.get_entity_mut(entity) {
         entity.remove::<(Lightmap, PendingLightmap, FollowsFiltering)>();
         wear::take_off(&mut entity);
-        touch_material(&mut entity);
+        touch_materials(&mut entity);
     }
 }
 
@@ -142,35 +144,26 @@ pub(crate) fn attached(world: &World, entity: Entity) -> Option<Shown> {
 }
 
 /// Counts the frames of those that wait.
-pub(crate) fn attach_pending(
-    mut commands: Commands,
-    mut waiting: Query<(Entity, &mut PendingLightmap, Option<&mut MeshMaterial3d<StandardMaterial>>)>,
-) {
-    for (entity, mut pending, material) in &mut waiting {
+pub(crate) fn attach_pending(mut commands: Commands, mut waiting: Query<(Entity, &mut PendingLightmap)>) {
+    for (entity, mut pending) in &mut waiting {
         if pending.frames_left > 0 {
             pending.frames_left -= 1;
             continue;
         }
-        let lightmap = pending.lightmap.clone();
-        let mut entity = commands.entity(entity);
-        entity.try_remove::<PendingLightmap>();
-        if let Some(mut material) = material {
-            entity.try_insert(lightmap);
-            material.set_changed();
-        }
-    }
-}
-
-fn touch_material(entity: &mut EntityWorldMut) {
-    if let Some(mut material) = entity.get_mut::<MeshMaterial3d<StandardMaterial>>() {
-        material.set_changed();
+        commands.entity(entity).queue_silenced(|mut entity: EntityWorldMut| {
+            let Some(PendingLightmap { lightmap, .. }) = entity.take() else { return };
+            if shows_lightmaps(entity.world(), EntityRef::from(&entity)) {
+                entity.insert(lightmap);
+                touch_materials(&mut entity);
+            }
+        });
     }
 }
 
 /// The entity's own mesh, if it can show a lightmap.
 fn check(world: &World, entity: Entity) -> Result<Handle<Mesh>, CannotAttach> {
     let entity = world.get_entity(entity).map_err(|_| CannotAttach::Despawned)?;
-    let (Some(mesh), true) = (wear::own_mesh(entity), entity.contains::<MeshMaterial3d<StandardMaterial>>()) else {
+    let (Some(mesh), true) = (wear::own_mesh(entity), shows_lightmaps(world, entity)) else {
         return Err(CannotAttach::NoStandardMaterial);
     };
     if entity.contains::<bevy::mesh::skinning::SkinnedMesh>()

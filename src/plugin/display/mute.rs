@@ -23,7 +23,6 @@ struct Before {
     lit_lightmapped: bool,
 }
 
-#[cfg(feature = "bake")]
 impl MutedLight {
     /// A rectangular light's own power, which is this now [lm].
     pub(crate) fn rect_power(muted: Option<&Self>, now: f32) -> f32 {

@@ -1,6 +1,6 @@
 //! `Mesh3d` into meshes and instances.
 
-use super::{Extraction, ExtractionWarning, Thing, material, pose, shadow_flags};
+use super::{Extraction, ExtractionWarning, NotReread, Thing, material, pose, reread, shadow_flags};
 use crate::plugin::baking::SceneSettings;
 use crate::plugin::display::{numbers, own_mesh};
 use crate::scene::{self, Instance, LightmapRequest, Topology};
@@ -39,9 +39,8 @@ pub(super) fn extract(
 
 /// A mesh of its own for a thing that is posed, and its place in the world.
 fn place_posed(world: &World, thing: &Thing, handle: &Handle<Mesh>, out: &mut Extraction) -> Option<(usize, Affine3A)> {
-    let posed = read(world, thing, handle, &mut out.warnings).and_then(|mut mesh| {
-        let source = world.get_resource::<Assets<Mesh>>().and_then(|meshes| meshes.get(handle));
-        let source = source.ok_or_else(|| ExtractionWarning::MeshNotLoaded { name: thing.name.clone() })?;
+    let posed = find(world, thing, handle, out).and_then(|source| {
+        let mut mesh = read(thing, source, &mut out.warnings)?;
         let place = pose::strike(world, thing.entity, source, &mut mesh);
         let not_read = |why| ExtractionWarning::PoseNotRead { name: thing.name.clone(), why };
         place.map(|place| (mesh, place)).map_err(not_read)
@@ -63,7 +62,8 @@ fn place_mesh(world: &World, thing: &Thing, handle: &Handle<Mesh>, out: &mut Ext
     if let Some(&known) = out.seen.meshes.get(&handle.id()) {
         return known;
     }
-    let index = match read(world, thing, handle, &mut out.warnings) {
+    let found = find(world, thing, handle, out);
+    let index = match found.and_then(|mesh| read(thing, mesh, &mut out.warnings)) {
         Ok(mesh) => {
             out.scene.meshes.push(mesh);
             Some(out.scene.meshes.len() - 1)
@@ -77,22 +77,29 @@ fn place_mesh(world: &World, thing: &Thing, handle: &Handle<Mesh>, out: &mut Ext
     index
 }
 
-fn read(
-    world: &World,
+/// The asset, with its vertices.
+fn find<'w>(
+    world: &'w World,
     thing: &Thing,
     handle: &Handle<Mesh>,
-    warnings: &mut Vec<ExtractionWarning>,
-) -> Result<scene::Mesh, ExtractionWarning> {
+    out: &mut Extraction,
+) -> Result<&'w Mesh, ExtractionWarning> {
     let name = thing.name.clone();
-    let Some(mesh) = world.get_resource::<Assets<Mesh>>().and_then(|meshes| meshes.get(handle)) else {
-        return Err(ExtractionWarning::MeshNotLoaded { name });
-    };
+    match reread::mesh(world, handle, &mut out.missed) {
+        None => Err(ExtractionWarning::MeshNotLoaded { name }),
+        Some(Err(why)) => Err(ExtractionWarning::RenderWorldOnly { name, why }),
+        Some(Ok(mesh)) => Ok(mesh),
+    }
+}
+
+fn read(thing: &Thing, mesh: &Mesh, warnings: &mut Vec<ExtractionWarning>) -> Result<scene::Mesh, ExtractionWarning> {
+    let name = thing.name.clone();
     let topology = match mesh.primitive_topology() {
         PrimitiveTopology::TriangleList => Topology::TriangleList,
         PrimitiveTopology::TriangleStrip => Topology::TriangleStrip,
         other => return Err(ExtractionWarning::NoTriangles { name, topology: format!("{other:?}") }),
     };
-    let gone = |_| ExtractionWarning::RenderWorldOnly { name: name.clone() };
+    let gone = |_| ExtractionWarning::RenderWorldOnly { name: name.clone(), why: NotReread::NotAsked };
     let indices = match mesh.try_indices_option().map_err(gone)? {
         None => scene::Indices::None,
         Some(Indices::U16(indices)) => scene::Indices::U16(indices.clone()),

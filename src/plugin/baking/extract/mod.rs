@@ -5,28 +5,35 @@
 
 mod camera;
 mod environment;
+mod hidden;
 mod light;
 mod material;
 mod mesh;
 mod pose;
+pub(super) mod reread;
+mod role;
 mod shadow_flags;
 mod texture;
 mod volume;
 mod warning;
 
+pub use reread::NotReread;
+use role::Role;
 pub use texture::Unreadable;
 pub use warning::{ExtractionWarning, Unsimulated};
 
 use super::events::BakeVolumes;
-use super::markers::{LightBlocker, LightmapReceiver};
+use super::markers::LightmapReceiver;
 use super::settings::SceneSettings;
 use crate::artefact::StableId;
 use crate::bake::{BakeSettings, VolumeBox, VolumeBoxes, VolumeSettings};
+use crate::plugin::display::{ExtrasFault, KilnExtras, fingerprint};
 use crate::plugin::stable_id;
 use crate::scene::{LightmapRequest, Scene, unique_ids};
-use bevy::camera::visibility::RenderLayers;
+use bevy::asset::{AssetPath, UntypedAssetId};
+use bevy::camera::visibility::{RenderLayers, VisibilityRange};
 use bevy::prelude::*;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// A world as the baker sees it.
 #[derive(Clone, Debug, Default)]
@@ -41,6 +48,12 @@ pub struct Extraction {
     pub volumes: Vec<VolumeBox>,
     /// Whether any mesh that is seen takes no part, as a thing that moves.
     pub has_movers: bool,
+    /// Files of what is with the renderer only and may be read again.
+    missed: Vec<AssetPath<'static>>,
+    /// Meshes and lights that would take part if they were not hidden.
+    hidden: Vec<Entity>,
+    /// Names that several things have, by which a game does not know one of them again.
+    twins: BTreeSet<String>,
     seen: Seen,
 }
 
@@ -70,15 +83,17 @@ impl Extraction {
 struct Seen {
     meshes: HashMap<AssetId<Mesh>, Option<usize>>,
     textures: HashMap<AssetId<Image>, Option<usize>>,
-    materials: HashMap<AssetId<StandardMaterial>, usize>,
+    materials: HashMap<UntypedAssetId, usize>,
 }
 
 /// Reads the world as it stands; its transforms and visibility must have been propagated, as they are in `Last`.
 pub fn extract_scene(world: &mut World, settings: &SceneSettings) -> Extraction {
     let mut out = Extraction::default();
-    let lights = light::find(world, settings, &mut out.warnings);
+    let lights = light::find(world, settings, &mut out);
     let meshes = find_meshes(world, settings, &mut out);
     volume::extract(world, settings, &mut out);
+    hidden::name(world, &mut out);
+    find_faulty_extras(world, &mut out.warnings);
     out.warnings.sort_by_cached_key(ToString::to_string);
     let things: Vec<Thing> = meshes.into_iter().chain(lights).collect();
     for thing in name_all(world, things, &mut out) {
@@ -86,6 +101,8 @@ pub fn extract_scene(world: &mut World, settings: &SceneSettings) -> Extraction 
             Kind::Mesh(request) => mesh::extract(world, &thing, request, settings, &mut out),
             Kind::Light(kind) => light::extract(world, &thing, kind, settings, &mut out),
         }
+        let known_again = fingerprint(world, thing.entity).filter(|_| !out.twins.contains(&thing.name));
+        out.scene.fingerprints.extend(known_again.map(|fingerprint| (thing.id.clone(), fingerprint)));
         out.entities.insert(thing.id, thing.entity);
     }
     environment::extract(world, settings, &mut out);
@@ -134,6 +151,7 @@ fn name_all(world: &World, mut things: Vec<Thing>, out: &mut Extraction) -> Vec<
     });
     for twins in things.chunk_by(|a, b| a.id == b.id).filter(|twins| twins.len() > 1) {
         let id = twins[0].name.clone();
+        out.twins.insert(id.clone());
         out.warnings.push(ExtractionWarning::SameId { id, count: twins.len() });
     }
     let ids = unique_ids(things.iter().map(|thing| thing.id.clone()));
@@ -143,6 +161,16 @@ fn name_all(world: &World, mut things: Vec<Thing>, out: &mut Extraction) -> Vec<
     things
 }
 
+/// What was written on things in the modelling program and cannot be read.
+fn find_faulty_extras(world: &mut World, warnings: &mut Vec<ExtractionWarning>) {
+    let mut written = world.query::<(Entity, &KilnExtras)>();
+    for (entity, extras) in written.iter(world).filter(|(_, extras)| !extras.faults.is_empty()) {
+        let name = stable_id(world, entity).as_str().to_owned();
+        let faulty = |fault: &ExtrasFault| ExtractionWarning::Extras { name: name.clone(), fault: fault.to_string() };
+        warnings.extend(extras.faults.iter().map(faulty));
+    }
+}
+
 /// The meshes that take part, as their marks say.
 fn find_meshes(world: &mut World, settings: &SceneSettings, out: &mut Extraction) -> Vec<Thing> {
     let only_marked = world.query_filtered::<(), With<LightmapReceiver>>().iter(world).next().is_some();
@@ -150,51 +178,48 @@ fn find_meshes(world: &mut World, settings: &SceneSettings, out: &mut Extraction
     let meshes: Vec<Entity> = meshes.iter(world).collect();
     let (world, warnings) = (&*world, &mut out.warnings);
     let mut things = Vec::new();
-    for entity in meshes.into_iter().filter(|&entity| is_visible(world, entity)) {
-        let mark = nearest_mark(world, entity);
-        if only_marked && mark.is_none() {
-            out.has_movers = true;
+    for entity in meshes {
+        let mark = role::of(world, entity);
+        let mut request = match mark.role {
+            Some(Role::Mover) => None,
+            Some(Role::Blocker) => Some(None),
+            Some(Role::Receiver) => Some(Some(mark.request())),
+            None => (!only_marked).then(|| Some(mark.request())),
+        };
+        let is_visible = is_visible(world, entity);
+        let Some(request) = &mut request else {
+            out.has_movers |= is_visible;
+            continue;
+        };
+        if !is_visible {
+            out.hidden.push(entity);
             continue;
         }
-        let mut role = mark.unwrap_or_else(|| Some(LightmapRequest::default()));
         let name = stable_id(world, entity).as_str().to_owned();
-        if is_distant_lod(world, entity) {
-            warnings.push(ExtractionWarning::DistantLevelOfDetail { name });
-            continue;
-        }
         if !is_on_layers(world, entity, settings) {
             warnings.push(ExtractionWarning::OtherLayers { name });
             continue;
         }
+        if let Some(metres) = distant_lod(world, entity) {
+            // Far off it has no lightmap to show.
+            out.has_movers = true;
+            warnings.push(ExtractionWarning::DistantLevelOfDetail { name, metres });
+            continue;
+        }
         if let Some(how) = pose::deformation(world, entity) {
             // A character that walks on must not leave its shadow behind.
-            if mark.is_none() {
+            if mark.role.is_none() {
                 out.has_movers = true;
                 warnings.push(ExtractionWarning::Deformed { name, how });
                 continue;
             }
-            if role.take().is_some() {
+            if request.take().is_some() {
                 warnings.push(ExtractionWarning::Posed { name, how });
             }
         }
-        things.push(Thing::new(world, entity, Kind::Mesh(role)));
+        things.push(Thing::new(world, entity, Kind::Mesh(*request)));
     }
     things
-}
-
-/// What the nearest mark on or above an entity asks for; the inner `None` is a blocker's.
-fn nearest_mark(world: &World, entity: Entity) -> Option<Option<LightmapRequest>> {
-    let mut next = Some(entity);
-    while let Some(entity) = next {
-        if let Some(receiver) = world.get::<LightmapReceiver>(entity) {
-            return Some(Some(LightmapRequest { density: receiver.density }));
-        }
-        if world.get::<LightBlocker>(entity).is_some() {
-            return Some(None);
-        }
-        next = world.get::<ChildOf>(entity).map(ChildOf::parent);
-    }
-    None
 }
 
 fn is_visible(world: &World, entity: Entity) -> bool {
@@ -207,7 +232,8 @@ fn is_on_layers(world: &World, entity: Entity, settings: &SceneSettings) -> bool
     layers.intersects(&settings.layers)
 }
 
-fn is_distant_lod(world: &World, entity: Entity) -> bool {
-    use bevy::camera::visibility::VisibilityRange;
-    world.get::<VisibilityRange>(entity).is_some_and(|range| range.start_margin.start > 0.0)
+/// From which distance on [m] a coarser level of detail is shown; `None` for what is seen from near.
+fn distant_lod(world: &World, entity: Entity) -> Option<f32> {
+    let range = world.get::<VisibilityRange>(entity)?;
+    Some(range.start_margin.start).filter(|&metres| metres > 0.0)
 }

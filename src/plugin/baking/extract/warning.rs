@@ -1,5 +1,6 @@
 //! What of a Bevy scene a bake leaves out or takes for something simpler, by name.
 
+use super::reread::NotReread;
 use super::texture::Unreadable;
 use thiserror::Error;
 
@@ -34,12 +35,14 @@ impl std::fmt::Display for Unsimulated {
 pub enum ExtractionWarning {
     /// The vertices are no longer in main memory.
     #[error(
-        "mesh \"{name}\" is in the render world only, so it is left out; load it with RenderAssetUsages::MAIN_WORLD \
-         as well"
+        "mesh \"{name}\" is in the render world only{why}, so it is left out; make or load it with \
+         RenderAssetUsages::MAIN_WORLD as well"
     )]
     RenderWorldOnly {
         /// The entity.
         name: String,
+        /// Why it was not read again.
+        why: NotReread,
     },
     /// The mesh asset is not there.
     #[error("mesh \"{name}\" is not loaded, so it is left out; bake once it is")]
@@ -132,15 +135,33 @@ pub enum ExtractionWarning {
         consequence: &'static str,
     },
     /// The mesh is a coarser level of detail.
-    #[error("mesh \"{name}\" is shown from a distance only (VisibilityRange), so it is left out")]
+    #[error(
+        "mesh \"{name}\" is shown from {metres} m on only (VisibilityRange), so it is left out, as the levels of one \
+         object would shade each other; irradiance volumes light it (BakeVolumes), or let its nearest level be seen \
+         from afar"
+    )]
     DistantLevelOfDetail {
         /// The entity.
         name: String,
+        /// Where it begins to be seen [m].
+        metres: f32,
+    },
+    /// Something is hidden, with all that is below it.
+    #[error(
+        "\"{name}\" is hidden (Visibility), so it is left out with what is below it ({count} {} in all); show it while \
+         baking if it is a part of the scene",
+        if *count == 1 { "mesh or light" } else { "meshes and lights" }
+    )]
+    Hidden {
+        /// The entity.
+        name: String,
+        /// How many meshes and lights are left out.
+        count: usize,
     },
     /// The mesh has no material that is understood.
     #[error(
-        "mesh \"{name}\" has no StandardMaterial, so it is taken as mid-grey and gets no lightmap; mark what is not \
-         part of the scene by giving the rest a LightmapReceiver"
+        "mesh \"{name}\" has no StandardMaterial, so it is taken as mid-grey and gets no lightmap; say what its \
+         material looks like with App::add_baked_material, or mark it NotBaked if it is not part of the scene"
     )]
     NoStandardMaterial {
         /// The entity.
@@ -224,6 +245,14 @@ pub enum ExtractionWarning {
     NoPerspective {
         /// The entity.
         name: String,
+    },
+    /// A custom property of a glTF file that cannot be read.
+    #[error("\"{name}\" {fault}")]
+    Extras {
+        /// The entity.
+        name: String,
+        /// Which, and why.
+        fault: String,
     },
     /// Two things that cannot be told apart.
     #[error("{count} things are called \"{id}\"; give each a KilnId so that a game can tell them apart")]

@@ -120,7 +120,7 @@ impl Sky {
     fn read(&self, world: &World, name: &str, out: &mut Extraction) {
         let mut why = None;
         for handle in &self.images {
-            match texture::image(world, handle).and_then(picture) {
+            match texture::image(world, handle, &mut out.missed).and_then(|image| picture(&image)) {
                 Ok((width, height, radiance)) => {
                     let label = texture::name(handle).unwrap_or_else(|| name.to_owned());
                     let radiance: Arc<[Vec3]> = radiance.iter().map(|&radiance| radiance * self.intensity).collect();

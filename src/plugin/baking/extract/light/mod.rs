@@ -26,7 +26,7 @@ pub(super) enum LightKind {
 const LOADERS_RANGE: f32 = 20.0;
 
 /// The lights that take part.
-pub(super) fn find(world: &mut World, settings: &SceneSettings, warnings: &mut Vec<ExtractionWarning>) -> Vec<Thing> {
+pub(super) fn find(world: &mut World, settings: &SceneSettings, out: &mut Extraction) -> Vec<Thing> {
     let mut lights = world.query::<(Entity, Has<RectLight>, Has<PointLight>, Has<SpotLight>, Has<DirectionalLight>)>();
     let mut found = Vec::new();
     for (entity, rect, point, spot, directional) in lights.iter(world) {
@@ -40,10 +40,13 @@ pub(super) fn find(world: &mut World, settings: &SceneSettings, warnings: &mut V
     }
     let world = &*world;
     let is_asked_for = |entity| LightBaking::of(world, entity) != LightBaking::RealTime;
-    let visible = found.into_iter().filter(|&(entity, _)| is_visible(world, entity) && is_asked_for(entity));
-    let (taken, left): (Vec<_>, Vec<_>) = visible.partition(|&(entity, _)| is_on_layers(world, entity, settings));
+    let asked = found.into_iter().filter(|&(entity, _)| is_asked_for(entity));
+    let (visible, hidden): (Vec<_>, Vec<_>) = asked.partition(|&(entity, _)| is_visible(world, entity));
+    let is_taken = |&(entity, _): &(Entity, LightKind)| is_on_layers(world, entity, settings);
+    let (taken, left): (Vec<_>, Vec<_>) = visible.into_iter().partition(is_taken);
     let name = |(entity, _)| stable_id(world, entity).as_str().to_owned();
-    warnings.extend(left.into_iter().map(|light| ExtractionWarning::OtherLayers { name: name(light) }));
+    out.warnings.extend(left.into_iter().map(|light| ExtractionWarning::OtherLayers { name: name(light) }));
+    out.hidden.extend(hidden.into_iter().map(|(entity, _)| entity));
     taken.into_iter().map(|(entity, kind)| Thing::new(world, entity, Kind::Light(kind))).collect()
 }
 

@@ -6,6 +6,7 @@ mod unsimulated;
 
 use super::{Extraction, ExtractionWarning, Thing};
 use crate::plugin::baking::SceneSettings;
+use crate::plugin::display::{FoundMaterial, find_described};
 use crate::scene::Material;
 use bevy::prelude::*;
 
@@ -22,15 +23,14 @@ pub(super) struct Placed {
 
 /// The place of an entity's material in the scene; reads it at its first use.
 pub(super) fn place(world: &World, thing: &Thing, settings: &SceneSettings, out: &mut Extraction) -> Placed {
-    let Some(handle) = world.get::<MeshMaterial3d<StandardMaterial>>(thing.entity) else {
+    let Some(FoundMaterial { id, material }) = find(world, thing.entity) else {
         out.warnings.push(ExtractionWarning::NoStandardMaterial { name: thing.name.clone() });
         return Placed { index: add(mid_grey(&thing.name), out), shows_lightmaps: false };
     };
-    if let Some(&index) = out.seen.materials.get(&handle.id()) {
+    if let Some(&index) = out.seen.materials.get(&id) {
         return Placed { index, shows_lightmaps: true };
     }
-    let materials = world.get_resource::<Assets<StandardMaterial>>();
-    let material = match materials.and_then(|materials| materials.get(&handle.0)) {
+    let material = match &material {
         Some(material) => {
             let what = unsimulated::of(material);
             if !what.is_empty() {
@@ -44,8 +44,17 @@ pub(super) fn place(world: &World, thing: &Thing, settings: &SceneSettings, out:
         }
     };
     let index = add(material, out);
-    out.seen.materials.insert(handle.id(), index);
+    out.seen.materials.insert(id, index);
     Placed { index, shows_lightmaps: true }
+}
+
+/// Bevy's own material on an entity, or one that the game has described.
+fn find(world: &World, entity: Entity) -> Option<FoundMaterial> {
+    let Some(handle) = world.get::<MeshMaterial3d<StandardMaterial>>(entity) else {
+        return find_described(world, entity);
+    };
+    let material = world.get_resource::<Assets<StandardMaterial>>().and_then(|materials| materials.get(&handle.0));
+    Some(FoundMaterial { id: handle.id().untyped(), material: material.cloned() })
 }
 
 fn add(material: Material, out: &mut Extraction) -> usize {

@@ -1,6 +1,7 @@
 //! Texel formats: from the bytes of an image to plain numbers, as a shader sees them: what a format lacks is 0, and
 //! alpha 1. Packed floats by the Vulkan specification's chapter on formats.
 
+use crate::plugin::baking::NotReread;
 use crate::scene::Texels;
 use bevy::render::render_resource::TextureFormat as Format;
 use half::f16;
@@ -14,8 +15,11 @@ pub enum Unreadable {
     #[error("is not loaded; bake once it is")]
     NotLoaded,
     /// Its texels are no longer in main memory.
-    #[error("is in the render world only; load it with RenderAssetUsages::MAIN_WORLD as well")]
-    RenderWorldOnly,
+    #[error("is in the render world only{why}; make or load it with RenderAssetUsages::MAIN_WORLD as well")]
+    RenderWorldOnly {
+        /// Why it was not read again.
+        why: NotReread,
+    },
     /// A format without a decoder, such as ETC2 and ASTC.
     #[error("is {format}, which cannot be read; give it uncompressed, or as BC1 to BC7, for the bake")]
     Format {

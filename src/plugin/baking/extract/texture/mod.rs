@@ -1,5 +1,5 @@
-//! `Image` into textures: each that a material refers to, once. What is compressed in a way that no decoder reads, or no
-//! longer in main memory, becomes a warning, and the material does without it.
+//! `Image` into textures: each that a material refers to, once. What is compressed in a way that no decoder reads, or
+//! no longer in main memory, becomes a warning, and the material does without it.
 
 mod blocks;
 mod formats;
@@ -8,11 +8,13 @@ use blocks::Blocks;
 pub use formats::Unreadable;
 use formats::{decode, texel_size};
 
-use super::{Extraction, ExtractionWarning};
+use super::{Extraction, ExtractionWarning, NotReread, reread};
 use crate::scene::{Filter, Texels, Texture, TextureRef, UvChannel, Wrap};
+use bevy::asset::AssetPath;
 use bevy::image::{ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor};
 use bevy::prelude::*;
 use bevy::render::render_resource::{TextureDataOrder, TextureDimension, TextureFormat};
+use std::borrow::Cow;
 
 /// A material's field that may hold a picture.
 #[derive(Clone, Copy)]
@@ -32,7 +34,7 @@ pub(super) fn place(world: &World, slot: Slot, out: &mut Extraction) -> Option<T
     let handle = slot.image?;
     let known = out.seen.textures.get(&handle.id()).copied();
     let index = known.unwrap_or_else(|| {
-        let index = match read(world, slot, handle) {
+        let index = match read(world, slot, handle, &mut out.missed) {
             Ok(texture) => {
                 out.scene.textures.push(texture);
                 Some(out.scene.textures.len() - 1)
@@ -56,8 +58,13 @@ pub(super) fn has_two_channels(world: &World, handle: &Handle<Image>) -> bool {
     matches!(format, Some(TextureFormat::Rg8Unorm | TextureFormat::Rg16Unorm | TextureFormat::Bc5RgUnorm))
 }
 
-fn read(world: &World, slot: Slot, handle: &Handle<Image>) -> Result<Texture, Unreadable> {
-    let image = image(world, handle)?;
+fn read(
+    world: &World,
+    slot: Slot,
+    handle: &Handle<Image>,
+    missed: &mut Vec<AssetPath<'static>>,
+) -> Result<Texture, Unreadable> {
+    let image = &*image(world, handle, missed)?;
     let size = image.texture_descriptor.size;
     if image.texture_descriptor.dimension != TextureDimension::D2 || size.depth_or_array_layers != 1 {
         return Err(Unreadable::NotFlat);
@@ -82,10 +89,14 @@ fn read(world: &World, slot: Slot, handle: &Handle<Image>) -> Result<Texture, Un
     })
 }
 
-/// An image that is loaded.
-pub(super) fn image<'w>(world: &'w World, handle: &Handle<Image>) -> Result<&'w Image, Unreadable> {
-    let images = world.get_resource::<Assets<Image>>();
-    images.and_then(|images| images.get(handle)).ok_or(Unreadable::NotLoaded)
+/// An image that is loaded, with its texels.
+pub(super) fn image<'w>(
+    world: &'w World,
+    handle: &Handle<Image>,
+    missed: &mut Vec<AssetPath<'static>>,
+) -> Result<Cow<'w, Image>, Unreadable> {
+    let image = reread::image(world, handle, missed).ok_or(Unreadable::NotLoaded)?;
+    image.map_err(|why| Unreadable::RenderWorldOnly { why })
 }
 
 /// The file that an image came from, as a name for it.
@@ -98,7 +109,7 @@ pub(super) fn layer(image: &Image, layer: usize) -> Result<Texels, Unreadable> {
     let descriptor = &image.texture_descriptor;
     let blocks = Blocks::of(descriptor.format);
     let texel = if blocks.is_none() { texel_size(descriptor.format)? } else { 0 };
-    let data = image.data.as_ref().ok_or(Unreadable::RenderWorldOnly)?;
+    let data = image.data.as_ref().ok_or(Unreadable::RenderWorldOnly { why: NotReread::NotAsked })?;
     let size_of =
         |level: u32| [descriptor.size.width, descriptor.size.height].map(|length| (length >> level).max(1) as usize);
     let bytes_of = |level: u32| {
