@@ -69,6 +69,8 @@ mod display;
 
 #[cfg(feature = "bake")]
 mod baking;
+#[cfg(feature = "bake")]
+mod overlay;
 #[cfg(feature = "editor")]
 mod panel;
 #[cfg(feature = "remote")]
@@ -92,6 +94,8 @@ pub use baking::{
     SceneSettings, Unreadable, Unsimulated, extract_scene,
 };
 
+#[cfg(feature = "bake")]
+pub use overlay::{CompareWithTruth, KilnComparison, KilnLegend, KilnOverlay, KilnOverlays, StopComparing, Swatch};
 #[cfg(feature = "editor")]
 pub use panel::{KilnButton, KilnPanel, KilnPanelRoot, KilnSelect, KilnSelection};
 #[cfg(feature = "bake")]

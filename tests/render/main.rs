@@ -9,12 +9,14 @@ mod compare;
 mod example;
 mod live;
 mod mask;
+mod overlay;
 #[cfg(feature = "editor")]
 mod panel;
 mod parity;
 mod picture;
 mod pieces;
 mod renderer;
+mod truth;
 mod volume;
 mod worn;
 
