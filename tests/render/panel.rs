@@ -113,9 +113,9 @@ fn the_panel_plans_bakes_and_selects() {
     assert!(planned > empty + 1000, "{planned} after the plan, {empty} before");
     assert_eq!(scroll_bar(&mut app), Visibility::Inherited);
     let world = app.world_mut();
-    let (node, place) =
+    let (node, middle) =
         world.query_filtered::<(&ComputedNode, &UiGlobalTransform), With<KilnPanelRoot>>().single(world).unwrap();
-    let bottom = place.translation.y + 0.5 * node.size().y;
+    let bottom = middle.translation.y + 0.5 * node.size().y;
     assert!(bottom < SIZE[1] as f32, "the panel ends at {bottom}");
 
     activate(&mut app, |button| matches!(button, KilnButton::Price(_)));

@@ -6,7 +6,8 @@ use crate::mask::walls;
 use crate::overlay::{keep, with_overlays};
 use crate::picture::Shown;
 use crate::renderer::{Screen, app_with, bake, show, spawn_camera};
-use bevy::camera::Exposure;
+use bevy::camera::{Exposure, Hdr};
+use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
 use bevy::world_serialization::WorldAssetRoot;
 use bevy_kiln::plugin::{CompareWithTruth, KilnComparison, StopComparing, extract_scene};
@@ -95,6 +96,15 @@ fn both_sides_of_the_divider_agree() {
     let darker = truth.map(|_, value| value * 0.5);
     assert!(agree(&picture(&app), &darker, 0..end, 2e-3), "the picture is not exposed as the frame is");
     app.world_mut().entity_mut(camera).insert(Exposure { ev100: 0.0 });
+
+    // Without Hdr the tones are mapped where things are drawn, to eight bits.
+    app.world_mut().entity_mut(camera).remove::<Hdr>().insert(Tonemapping::Reinhard);
+    show(&mut app);
+    let mapped = truth.map(|_, value| value / (value + 1.0));
+    let apart =
+        picture(&app).linear.iter().zip(&mapped.linear).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f64::max);
+    assert!(apart < 0.006, "{apart} from what the camera's tone mapping makes of it");
+    app.world_mut().entity_mut(camera).insert((Hdr, Tonemapping::None));
 
     app.world_mut().trigger(StopComparing);
     show(&mut app);

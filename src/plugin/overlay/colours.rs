@@ -3,7 +3,7 @@
 use super::KilnOverlay;
 use super::legend::{Swatch, swatch};
 use crate::bake::{Page, TexelState};
-use crate::math::luminance;
+use crate::math::{Portable, luminance};
 
 /// A colour as a screen takes it, 8-bit sRGB.
 pub(super) type Rgb = [u8; 3];
@@ -42,7 +42,7 @@ pub(super) fn of_texel(overlay: KilnOverlay, page: &Page, texel: usize, asked: A
     match overlay {
         KilnOverlay::TexelDensity => {
             let ratio = f64::from(page.density[texel] / asked.density);
-            let colour = if ratio > 0.0 { ramp(&DENSITY, ratio.log2()) } else { NOTHING };
+            let colour = if ratio > 0.0 { ramp(&DENSITY, Portable::log2(ratio)) } else { NOTHING };
             let width = page.width as usize;
             let is_dim = (texel % width + texel / width) % 2 == 1;
             if is_dim { colour.map(|value| (f64::from(value) * DIM).round() as u8) } else { colour }

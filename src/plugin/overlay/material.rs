@@ -62,7 +62,10 @@ impl Material for OverlayMaterial {
 
 pub(super) fn plugin(app: &mut App) {
     let shader = Shader::from_wgsl(include_str!("overlay.wgsl"), "bevy_kiln/plugin/overlay/overlay.wgsl");
-    // A handle with a number of its own is never taken.
-    let _ = app.world_mut().resource_mut::<Assets<Shader>>().insert(&SHADER, shader);
+    // Where there is no renderer there is nothing to draw with.
+    if let Some(mut shaders) = app.world_mut().get_resource_mut::<Assets<Shader>>() {
+        // A handle with a number of its own is always valid.
+        let _ = shaders.insert(&SHADER, shader);
+    }
     app.add_plugins(MaterialPlugin::<OverlayMaterial>::default());
 }

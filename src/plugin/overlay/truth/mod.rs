@@ -10,6 +10,7 @@ use crate::bake::Picture;
 use crate::plugin::baking::LastBake;
 use crate::plugin::{BakeStatus, KilnSystems, KilnWork, NextBake, extract_scene};
 use crate::scene::{Camera as Pinhole, Scene};
+use crate::trace::Transport;
 use bevy::math::Affine3A;
 use bevy::prelude::*;
 use bevy::window::PrimaryWindow;
@@ -172,7 +173,8 @@ fn trace(world: &mut World, scene: Arc<Scene>, view: View) -> Result<Tracing, St
         scene,
         camera: Pinhole { name: "the game's".to_owned(), world_from_camera, vertical_fov },
         size: size.to_array(),
-        transport: crate::trace::Transport { max_bounces: None, ..settings.transport },
+        // What a bake leaves out for speed is a part of the truth.
+        transport: Transport { max_bounces: None, clamp: None, ..settings.transport },
         samples: comparison.asked,
         threads: settings.threads,
     })
@@ -257,5 +259,48 @@ fn drag(
         if comparison.divider != divider {
             comparison.divider = divider;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::camera::{ComputedCameraValues, RenderTargetInfo};
+
+    #[test]
+    fn the_divider_follows_the_pointer_that_took_hold_of_it() {
+        let mut world = World::new();
+        // 200 x 100 logical pixels, with the divider in the middle.
+        let target_info = Some(RenderTargetInfo { physical_size: UVec2::new(400, 200), scale_factor: 2.0 });
+        let computed = ComputedCameraValues { target_info, ..default() };
+        let camera = world.spawn(Camera { computed, ..default() }).id();
+        let view =
+            View { camera, world_from_camera: Affine3A::IDENTITY, vertical_fov: 1.0, size: UVec2::new(400, 200) };
+        world.insert_resource(Truth { view: Some(view), quad: Some(camera), ..default() });
+        world.init_resource::<KilnComparison>();
+        world.init_resource::<ButtonInput<MouseButton>>();
+        let window = world.spawn((Window::default(), PrimaryWindow)).id();
+        let drag = world.register_system(drag);
+        let mut point = |world: &mut World, x: f32, is_pressed: bool| {
+            let place = Some(Vec2::new(x, 50.0));
+            world.get_mut::<Window>(window).unwrap().set_cursor_position(place);
+            let mut buttons = world.resource_mut::<ButtonInput<MouseButton>>();
+            buttons.clear();
+            if is_pressed {
+                buttons.press(MouseButton::Left)
+            } else {
+                buttons.release(MouseButton::Left)
+            }
+            world.run_system(drag).unwrap();
+            world.resource::<KilnComparison>().divider
+        };
+        assert_eq!(point(&mut world, 104.0, false), 0.5, "nothing is pressed");
+        assert_eq!(point(&mut world, 50.0, true), 0.5, "pressed elsewhere");
+        assert_eq!(point(&mut world, 100.0, true), 0.5, "pressed before it came here");
+        assert_eq!(point(&mut world, 100.0, false), 0.5);
+        assert_eq!(point(&mut world, 104.0, true), 0.52);
+        assert_eq!(point(&mut world, 150.0, true), 0.75);
+        assert_eq!(point(&mut world, 999.0, true), 1.0);
+        assert_eq!(point(&mut world, 20.0, false), 1.0, "let go");
     }
 }
