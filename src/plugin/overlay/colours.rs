@@ -68,17 +68,13 @@ pub(super) fn of_texel(overlay: KilnOverlay, page: &Page, texel: usize, asked: A
 
 /// What the colours mean.
 pub(super) fn swatches(overlay: KilnOverlay) -> Vec<Swatch> {
+    let along = |ramp: &[(f64, Rgb)], words: [&str; 5]| {
+        let stops = ramp.iter().zip(words).map(|(&(_, colour), words)| swatch(colour, words));
+        stops.chain([swatch(NOTHING, "not measured")]).collect()
+    };
     match overlay {
-        KilnOverlay::TexelDensity => ["a quarter", "half", "as asked", "twice", "four times"]
-            .into_iter()
-            .zip(DENSITY)
-            .map(|(words, (_, colour))| swatch(colour, words))
-            .collect(),
-        KilnOverlay::Error => ["none", "half", "as asked", "twice", "four times and more"]
-            .into_iter()
-            .zip(ERROR)
-            .map(|(words, (_, colour))| swatch(colour, words))
-            .collect(),
+        KilnOverlay::TexelDensity => along(&DENSITY, ["a quarter", "half", "as asked", "twice", "four times"]),
+        KilnOverlay::Error => along(&ERROR, ["none", "half", "as asked", "twice", "four times and more"]),
         KilnOverlay::Validity => vec![
             swatch(GREEN, "measured"),
             swatch(MAGENTA, "inside of bodies, filled in"),

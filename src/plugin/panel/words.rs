@@ -63,7 +63,7 @@ fn of_ending(ending: &KilnEnding) -> String {
 fn plan_line(plan: &BakePlan) -> String {
     let megabytes = plan.memory_bytes as f64 / 1e6;
     let memory = if megabytes < 9.95 { format!("{megabytes:.1} MB") } else { format!("{megabytes:.0} MB") };
-    let (texels, textures) = (counted(plan.texels as u64, "texel"), counted(plan.pages as u64, "texture"));
+    let (texels, textures) = (counted(plan.texels, "texel"), counted(plan.pages.into(), "texture"));
     format!("{texels} in {textures}\n{memory} while it bakes")
 }
 

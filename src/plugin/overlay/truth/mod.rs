@@ -281,7 +281,7 @@ mod tests {
         world.init_resource::<ButtonInput<MouseButton>>();
         let window = world.spawn((Window::default(), PrimaryWindow)).id();
         let drag = world.register_system(drag);
-        let mut point = |world: &mut World, x: f32, is_pressed: bool| {
+        let point = |world: &mut World, x: f32, is_pressed: bool| {
             let place = Some(Vec2::new(x, 50.0));
             world.get_mut::<Window>(window).unwrap().set_cursor_position(place);
             let mut buttons = world.resource_mut::<ButtonInput<MouseButton>>();

@@ -79,7 +79,7 @@ impl Tracing {
 }
 
 fn trace(task: &Task, sender: &Sender<News>, cancel: &CancelToken) -> Result<(), BakeError> {
-    let least = REPLICATES as u32;
+    let least = REPLICATES;
     let [width, height] = task.size;
     let small = [width.div_ceil(FIRST_LOOK), height.div_ceil(FIRST_LOOK)];
     let _ = sender.send(News::Picture(Box::new(pass(task, small, least, 0, cancel)?), 0));
