@@ -38,6 +38,9 @@
 //! [`BakeLightmaps`] has; what it leaves out is as [`NextBake`] says, as for the keys. Bind it to the loopback address:
 //! whoever reaches the port can do anything with the app.
 //!
+//! [`KilnOverlays`] draws what a bake knows of its texels on the surfaces ([`KilnOverlay`]) and, beside the frame, a
+//! path-traced picture of the same world from the same camera ([`CompareWithTruth`]).
+//!
 //! What moves is lit by irradiance volumes ([`BakeVolumes`]): they come with the lightmaps where the scene has meshes that
 //! take no part in the bake. Boxes are found, or placed as [`ProbeVolume`].
 //!

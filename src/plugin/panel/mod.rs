@@ -4,6 +4,8 @@
 //! Built of Bevy's own editor widgets (feathers). It is one more door: it asks [`KilnControl`], shows [`BakeStatus`](super::BakeStatus) and
 //! knows nothing else of the kiln. What it shows is put into words in `words`, laid out in `view`.
 
+mod lists;
+mod pieces;
 mod select;
 mod view;
 mod words;
@@ -55,10 +57,10 @@ impl Plugin for KilnPanel {
                 Update,
                 (
                     view::show_progress,
-                    view::show_lists,
+                    lists::show_lists,
                     view::show_buttons,
-                    view::show_scrollbars,
-                    view::show_legend,
+                    pieces::show_scrollbars,
+                    lists::show_legend,
                     select::frame,
                 ),
             )

@@ -1,25 +1,19 @@
 //! Where the parts of the panel are, and what they show when the kiln's status changes.
 
+use super::pieces::{button, fixed, scrolling};
 use super::{KilnButton, words};
-use crate::bake::BakePlan;
-use crate::plugin::{
-    BakeGoal, BakeId, BakeStatus, KilnComparison, KilnControl, KilnLegend, KilnOverlay, KilnWarning, KilnWork,
-};
-use bevy::ecs::template::EntityTemplate;
+use crate::plugin::{BakeGoal, BakeStatus, KilnComparison, KilnControl, KilnOverlay, KilnWork};
 use bevy::feathers::containers::{pane, pane_body, pane_header};
-use bevy::feathers::controls::{ButtonVariant, FeathersButton, FeathersScrollbar};
+use bevy::feathers::controls::ButtonVariant;
 use bevy::feathers::display::{label, label_dim, label_small};
-use bevy::feathers::theme::{ThemeTextColor, ThemedText};
+use bevy::feathers::theme::ThemeTextColor;
 use bevy::feathers::tokens;
 use bevy::prelude::*;
 use bevy::ui::InteractionDisabled;
-use bevy::ui_widgets::{ControlOrientation, ScrollArea};
-use bevy_scene::{CommandsSceneExt, bsn, bsn_list};
+use bevy_scene::{CommandsSceneExt, bsn};
 
 const WIDTH: f32 = 300.0;
 const COMPARE: &str = "Compare with the truth";
-/// Warnings that are listed; the rest is counted.
-const LISTED: usize = 64;
 const BAR: Color = Color::srgb(0.25, 0.52, 0.9);
 const TROUGH: Color = Color::srgb(0.1, 0.1, 0.12);
 
@@ -102,54 +96,6 @@ pub(super) fn spawn(mut commands: Commands) {
     }
 }
 
-/// What keeps its height however little room there is.
-fn fixed(flex_direction: FlexDirection, gap: u16) -> Node {
-    Node { flex_direction, row_gap: px(gap), column_gap: px(gap), flex_shrink: 0.0, ..default() }
-}
-
-/// A column that takes what room there is and scrolls, by wheel and bar, what does not fit. Returns the column.
-fn scrolling(commands: &mut Commands, parent: Entity) -> Entity {
-    let frame = Node { min_height: px(0), flex_shrink: 1.0, flex_direction: FlexDirection::Column, ..default() };
-    let frame = commands.spawn((frame, ChildOf(parent))).id();
-    let column = Node {
-        min_height: px(0),
-        flex_shrink: 1.0,
-        flex_direction: FlexDirection::Column,
-        row_gap: px(6),
-        padding: UiRect::right(px(10)),
-        overflow: Overflow::scroll_y(),
-        ..default()
-    };
-    let column = commands.spawn((column, ScrollArea, ChildOf(frame))).id();
-    let bar = bsn! {
-        @FeathersScrollbar { @target: {EntityTemplate::from(column)}, @orientation: {ControlOrientation::Vertical} }
-        Node { position_type: PositionType::Absolute, right: px(0), top: px(0), bottom: px(0), width: px(6) }
-    };
-    commands.spawn_scene(bar).insert((ScrollbarOf(column), ChildOf(frame)));
-    column
-}
-
-/// The scroll bar of a column.
-#[derive(Component)]
-pub(super) struct ScrollbarOf(Entity);
-
-/// Scroll bars are seen where there is anything to scroll.
-pub(super) fn show_scrollbars(columns: Query<&ComputedNode>, mut bars: Query<(&ScrollbarOf, &mut Visibility)>) {
-    for (of, mut visibility) in &mut bars {
-        let overflows = columns.get(of.0).is_ok_and(|column| column.content_size().y > column.size().y + 0.5);
-        visibility.set_if_neq(if overflows { Visibility::Inherited } else { Visibility::Hidden });
-    }
-}
-
-fn button(commands: &mut Commands, parent: Entity, action: KilnButton, caption: &str) {
-    let caption = caption.to_owned();
-    let scene = bsn! {
-        @FeathersButton { @caption: {bsn_list![(Text(caption) ThemedText)]} }
-        Node { flex_grow: 1.0 }
-    };
-    commands.spawn_scene(scene).insert((action, ChildOf(parent)));
-}
-
 /// Greys what can do nothing now, and marks what is chosen.
 pub(super) fn show_buttons(
     kiln: KilnControl,
@@ -212,80 +158,5 @@ pub(super) fn show_progress(
     let fraction = status.running().map_or(0.0, |running| running.fraction);
     for (_, mut bar) in bars.iter_mut().filter(|(part, _)| **part == Part::Bar) {
         bar.width = percent(100.0 * fraction as f32);
-    }
-}
-
-/// Prices and effects of the last plan, warnings of the last job; anew when a job has ended.
-pub(super) fn show_lists(
-    status: Res<BakeStatus>,
-    lists: Query<(Entity, &Part)>,
-    mut shown: Local<Option<Option<BakeId>>>,
-    mut commands: Commands,
-) {
-    let latest = status.outcomes().next();
-    let now = latest.map(|outcome| outcome.id);
-    if shown.replace(now) == Some(now) {
-        return;
-    }
-    for (list, part) in &lists {
-        match part {
-            Part::Plan => {
-                commands.entity(list).despawn_children();
-                if let Some(plan) = status.plan() {
-                    show_plan(&mut commands, list, plan);
-                }
-            }
-            Part::Warnings => {
-                commands.entity(list).despawn_children();
-                show_warnings(&mut commands, list, latest.map_or(&[], |outcome| &outcome.warnings));
-            }
-            Part::Status | Part::Bar | Part::Legend | Part::Comparison => {}
-        }
-    }
-}
-
-/// What the colours on the surfaces mean.
-pub(super) fn show_legend(legend: Res<KilnLegend>, lists: Query<(Entity, &Part)>, mut commands: Commands) {
-    if !legend.is_changed() {
-        return;
-    }
-    for (list, _) in lists.iter().filter(|(_, part)| **part == Part::Legend) {
-        commands.entity(list).despawn_children();
-        if !legend.sentence.is_empty() {
-            commands.spawn_scene(label_small(legend.sentence.clone())).insert(ChildOf(list));
-        }
-        for swatch in &legend.swatches {
-            let row = Node { align_items: AlignItems::Center, ..fixed(FlexDirection::Row, 6) };
-            let row = commands.spawn((row, ChildOf(list))).id();
-            let square = Node { width: px(12), height: px(12), ..default() };
-            commands.spawn((square, BackgroundColor(swatch.colour), ChildOf(row)));
-            commands.spawn_scene(label_small(swatch.words.clone())).insert(ChildOf(row));
-        }
-    }
-}
-
-fn show_plan(commands: &mut Commands, list: Entity, plan: &BakePlan) {
-    commands.spawn_scene(label_dim("Error and time: choose one")).insert(ChildOf(list));
-    for offer in &plan.predicted {
-        button(commands, list, KilnButton::Price(offer.error), &words::price(offer));
-    }
-    commands.spawn_scene(label_dim("Simulated, and share of the time")).insert(ChildOf(list));
-    commands.spawn_scene(label_small(words::effects(plan))).insert(ChildOf(list));
-}
-
-/// Each in its words; a button below it where there is something to select.
-fn show_warnings(commands: &mut Commands, list: Entity, warnings: &[KilnWarning]) {
-    if warnings.is_empty() {
-        return;
-    }
-    commands.spawn_scene(label_dim("Warnings")).insert(ChildOf(list));
-    for warning in warnings.iter().take(LISTED) {
-        commands.spawn_scene(label_small(warning.sentence.clone())).insert(ChildOf(list));
-        if let Some(entity) = warning.entity {
-            button(commands, list, KilnButton::Select(entity), "Select");
-        }
-    }
-    if let Some(more) = warnings.len().checked_sub(LISTED).filter(|&more| more > 0) {
-        commands.spawn_scene(label_dim(format!("and {more} more"))).insert(ChildOf(list));
     }
 }
