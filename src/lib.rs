@@ -59,9 +59,9 @@ pub mod prelude {
     #[cfg(feature = "bake")]
     pub use crate::plugin::{
         AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeLightmaps, BakePlanned, BakeProgress, BakeScope,
-        BakeStatus, BakeView, BakeVolumes, CancelBake, ClearLightmaps, EmissiveUnit, KilnControl, KilnShortcuts,
-        LightBlocker, LightmapDensity, LightmapFormat, LightmapLayout, LightmapReceiver, NextBake, NotBaked, PauseBake,
-        PlanBake, ProbeVolume, RangeWindow, ResumeBake, SceneSettings,
+        BakeStatus, BakeView, BakeVolumes, CancelBake, ClearLightmaps, EmissiveUnit, KilnControl, KilnOverlay,
+        KilnOverlays, KilnShortcuts, LightBlocker, LightmapDensity, LightmapFormat, LightmapLayout, LightmapReceiver,
+        NextBake, NotBaked, PauseBake, PlanBake, ProbeVolume, RangeWindow, ResumeBake, SceneSettings,
     };
     pub use crate::plugin::{
         BakedFolder, BakedLightmaps, BakedMaterialApp, BakedVolume, KilnId, KilnPlugin, KilnSystems, LightBaking,

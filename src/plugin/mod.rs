@@ -38,6 +38,9 @@
 //! has; what it leaves out is as [`NextBake`] says, as for the keys. Bind it to the loopback address: whoever reaches
 //! the port can do anything with the app.
 //!
+//! [`KilnOverlays`] draws what a bake knows of its texels on the surfaces ([`KilnOverlay`]) and, beside the frame, a
+//! path-traced picture of the same world from the same camera ([`CompareWithTruth`]).
+//!
 //! What moves is lit by irradiance volumes ([`BakeVolumes`]): they come with the lightmaps where the scene has meshes
 //! that take no part in the bake. Boxes are found, or placed as [`ProbeVolume`].
 //!
@@ -76,6 +79,8 @@ mod display;
 
 #[cfg(feature = "bake")]
 mod baking;
+#[cfg(feature = "bake")]
+mod overlay;
 #[cfg(feature = "editor")]
 mod panel;
 #[cfg(feature = "remote")]
@@ -99,6 +104,8 @@ pub use baking::{
     RangeWindow, ResumeBake, RunningJob, SceneSettings, Unreadable, Unsimulated, extract_scene,
 };
 
+#[cfg(feature = "bake")]
+pub use overlay::{CompareWithTruth, KilnComparison, KilnLegend, KilnOverlay, KilnOverlays, StopComparing, Swatch};
 #[cfg(feature = "editor")]
 pub use panel::{KilnButton, KilnPanel, KilnPanelRoot, KilnSelect, KilnSelection};
 #[cfg(feature = "bake")]

@@ -10,12 +10,14 @@ mod example;
 mod examples;
 mod live;
 mod mask;
+mod overlay;
 #[cfg(feature = "editor")]
 mod panel;
 mod parity;
 mod picture;
 mod pieces;
 mod renderer;
+mod truth;
 mod volume;
 mod window;
 mod worn;

@@ -78,6 +78,11 @@ impl KilnControl<'_> {
         self.kiln.ask_to_clear();
     }
 
+    /// Whether anything of a bake is on show, which [`clear`](Self::clear) would take off.
+    pub fn has_baked(&self) -> bool {
+        self.kiln.is_on_show()
+    }
+
     /// What the kiln is at.
     pub fn status(&self) -> &BakeStatus {
         &self.status
@@ -86,6 +91,11 @@ impl KilnControl<'_> {
     /// What the next bake shall be like.
     pub fn next_bake(&mut self) -> &mut BakeLightmaps {
         &mut self.next.0
+    }
+
+    /// The same, to look at.
+    pub fn settings(&self) -> &BakeLightmaps {
+        &self.next.0
     }
 
     /// The number of a job that is refused.

@@ -5,7 +5,7 @@
 use super::control::KilnControl;
 use super::events::{
     BakeFailed, BakeFinished, BakeLightmaps, BakePlanned, BakeProgress, BakeScope, BakeView, CancelBake,
-    ClearLightmaps, LightmapFormat, PauseBake, PlanBake, ResumeBake,
+    ClearLightmaps, PauseBake, PlanBake, ResumeBake,
 };
 use super::extract::{Extraction, extract_scene, reread};
 use super::live::LiveView;
@@ -45,6 +45,10 @@ impl Kiln {
         self.clear_asked = true;
     }
 
+    pub(super) fn is_on_show(&self) -> bool {
+        self.last.is_some() || self.job.as_ref().is_some_and(|job| job.is_on_show)
+    }
+
     /// The switch of the job that is under way.
     pub(super) fn token(&self) -> Option<&CancelToken> {
         let asked = self.asked.as_ref().map(|request| &request.cancel);
@@ -66,6 +70,37 @@ impl Request {
     }
 }
 
+/// A bake that was finished and is on show, for whoever looks into it.
+#[derive(Clone)]
+pub(in crate::plugin) struct LastBake {
+    /// What was baked.
+    pub(in crate::plugin) lightmap: Arc<Lightmap>,
+    target: Arc<Target>,
+}
+
+impl LastBake {
+    /// The last one, until it is cleared.
+    pub(in crate::plugin) fn of(world: &World) -> Option<Self> {
+        let OnShow { lightmap, target, .. } = world.get_resource::<Kiln>()?.last.as_ref()?;
+        Some(Self { lightmap: Arc::clone(lightmap), target: Arc::clone(target) })
+    }
+
+    /// Which job it was.
+    pub(in crate::plugin) fn id(&self) -> BakeId {
+        self.target.id
+    }
+
+    /// What was asked for.
+    pub(in crate::plugin) fn settings(&self) -> &BakeLightmaps {
+        &self.target.settings
+    }
+
+    /// The entity that had this id.
+    pub(in crate::plugin) fn entity(&self, id: &StableId) -> Option<Entity> {
+        self.target.entities.get(id).copied()
+    }
+}
+
 /// A bake, and what it belongs on.
 #[derive(Clone)]
 struct OnShow {
@@ -83,9 +118,9 @@ struct Baked {
 
 /// Whose a bake is, and how it is shown.
 struct Target {
+    id: BakeId,
+    settings: BakeLightmaps,
     entities: BTreeMap<StableId, Entity>,
-    ambient_baked: bool,
-    format: LightmapFormat,
 }
 
 /// What a job makes.
@@ -186,11 +221,7 @@ pub(super) fn start(world: &mut World) {
     if let Err(error) = worker {
         return fail(world, request.id, &BakeError::Threads { reason: error.to_string() }, warnings);
     }
-    let target = Arc::new(Target {
-        entities,
-        ambient_baked: request.settings.scene.ambient == super::AmbientMode::Bake,
-        format: request.settings.format,
-    });
+    let target = Arc::new(Target { id: request.id, settings: request.settings.clone(), entities });
     world.resource_mut::<BakeStatus>().started();
     world.resource_mut::<Kiln>().job =
         Some(Job { request, view, is_on_show: false, result: Mutex::new(receiver), target, names, warnings });
@@ -283,9 +314,10 @@ fn show_news(world: &mut World) {
 
 fn show(world: &mut World, on_show: &OnShow) -> super::write_back::Written {
     let OnShow { lightmap, volumes, target } = on_show;
-    let Target { entities, ambient_baked, format } = &**target;
+    let Target { settings, entities, .. } = &**target;
+    let ambient_baked = settings.scene.ambient == super::AmbientMode::Bake;
     let volumes = volumes.as_ref().map(|volumes| volumes.as_slice());
-    write_back(world, &Finished { lightmap, volumes, entities, ambient_baked: *ambient_baked, format: *format })
+    write_back(world, &Finished { lightmap, volumes, entities, ambient_baked, format: settings.format })
 }
 
 fn finish(world: &mut World, job: &Job, baked: Baked, mut warnings: Vec<KilnWarning>) {

@@ -24,6 +24,8 @@ pub use settings::{AmbientMode, EmissiveUnit, RangeWindow, SceneSettings};
 pub use status::{BakeId, BakeStatus, KilnEnding, KilnOutcome, KilnWork, RunningJob};
 pub use warning::KilnWarning;
 
+pub(super) use job::LastBake;
+
 use super::KilnSystems;
 use bevy::asset::AssetApp;
 use bevy::prelude::*;

@@ -1,8 +1,11 @@
-//! A panel inside the running game: bake, plan, hold, stop, clear; what it would cost; how far it is; what was left out.
+//! A panel inside the running game: bake, plan, hold, stop, clear; what it would cost; how far it is; what was left out;
+//! what is known of the texels, on the surfaces themselves.
 //!
 //! Built of Bevy's own editor widgets (feathers). It is one more door: it asks [`KilnControl`], shows [`BakeStatus`](super::BakeStatus) and
 //! knows nothing else of the kiln. What it shows is put into words in `words`, laid out in `view`.
 
+mod lists;
+mod pieces;
 mod select;
 mod view;
 mod words;
@@ -11,6 +14,7 @@ pub use select::{KilnSelect, KilnSelection};
 pub use view::KilnPanelRoot;
 
 use super::baking::{BakeGoal, KilnControl};
+use super::overlay::{CompareWithTruth, KilnComparison, KilnOverlay, KilnOverlays, StopComparing};
 use bevy::feathers::dark_theme::create_dark_theme;
 use bevy::feathers::theme::UiTheme;
 use bevy::feathers::{FeathersCorePlugin, FeathersPlugins};
@@ -21,7 +25,8 @@ use bevy_scene::ScenePlugin;
 /// The panel, in the upper right corner of the window. Opt in; a shipped game has no use for it.
 ///
 /// A price that is clicked becomes the goal of [`NextBake`](super::NextBake), a warning that is clicked triggers
-/// [`KilnSelect`] with its entity, which is framed until the next.
+/// [`KilnSelect`] with its entity, which is framed until the next. What can do nothing now is grey; what has no room
+/// scrolls. It brings [`KilnOverlays`] along.
 ///
 /// ```no_run
 /// use bevy::prelude::*;
@@ -42,10 +47,23 @@ impl Plugin for KilnPanel {
         if !app.is_plugin_added::<ScenePlugin>() {
             app.add_plugins(ScenePlugin);
         }
+        if !app.is_plugin_added::<KilnOverlays>() {
+            app.add_plugins(KilnOverlays);
+        }
         app.init_resource::<KilnSelection>()
             .register_type::<KilnSelect>()
             .add_systems(Startup, view::spawn)
-            .add_systems(Update, (view::show_progress, view::show_lists, select::frame))
+            .add_systems(
+                Update,
+                (
+                    view::show_progress,
+                    lists::show_lists,
+                    view::show_buttons,
+                    pieces::show_scrollbars,
+                    lists::show_legend,
+                    select::frame,
+                ),
+            )
             .add_observer(select::select)
             .add_observer(heed);
     }
@@ -66,11 +84,21 @@ pub enum KilnButton {
     Clear,
     /// Makes this error the goal of the next bake.
     Price(f64),
+    /// Shows this on the surfaces.
+    Overlay(KilnOverlay),
+    /// Compares the frame with the truth, or stops that.
+    Compare,
     /// Selects this entity.
     Select(Entity),
 }
 
-fn heed(activated: On<Activate>, buttons: Query<&KilnButton>, mut kiln: KilnControl, mut commands: Commands) {
+fn heed(
+    activated: On<Activate>,
+    buttons: Query<&KilnButton>,
+    comparison: Res<KilnComparison>,
+    mut kiln: KilnControl,
+    mut commands: Commands,
+) {
     let Ok(button) = buttons.get(activated.entity) else { return };
     let next = kiln.next_bake().clone();
     match *button {
@@ -94,6 +122,9 @@ fn heed(activated: On<Activate>, buttons: Query<&KilnButton>, mut kiln: KilnCont
         }
         KilnButton::Clear => kiln.clear(),
         KilnButton::Price(error) => kiln.next_bake().goal = BakeGoal::Error(error),
+        KilnButton::Compare if comparison.is_on => commands.trigger(StopComparing),
+        KilnButton::Compare => commands.trigger(CompareWithTruth::default()),
+        KilnButton::Overlay(overlay) => commands.trigger(overlay),
         KilnButton::Select(entity) => commands.trigger(KilnSelect { entity }),
     }
 }

@@ -1,7 +1,7 @@
 //! The kiln's status in words and numbers for people.
 
 use crate::bake::{BakePlan, Prediction, Stage};
-use crate::plugin::{BakeGoal, BakeStatus, KilnEnding, KilnWork, RunningJob};
+use crate::plugin::{BakeStatus, KilnComparison, KilnEnding, KilnWork, RunningJob};
 
 /// What the kiln is at, in a line or two.
 pub(super) fn status(status: &BakeStatus) -> String {
@@ -9,6 +9,19 @@ pub(super) fn status(status: &BakeStatus) -> String {
         (Some(running), _) => of_running(running),
         (None, Some(outcome)) => of_ending(&outcome.ending),
         (None, None) => "Nothing is baked yet".to_owned(),
+    }
+}
+
+/// How far the picture beside the frame is; nothing where there is none.
+pub(super) fn comparison(comparison: &KilnComparison) -> String {
+    let KilnComparison { is_on, paths, asked, failure, .. } = comparison;
+    match (failure, is_on, paths) {
+        (Some(reason), ..) => format!("No picture: {reason}"),
+        (None, false, _) => String::new(),
+        (None, true, 0) => "Left of the line the game, right of it the truth: a first look".to_owned(),
+        (None, true, paths) => {
+            format!("Left of the line the game, right of it the truth: {paths} of {asked} paths for each pixel")
+        }
     }
 }
 
@@ -38,7 +51,8 @@ fn of_ending(ending: &KilnEnding) -> String {
     match ending {
         KilnEnding::Baked { texels, kept, seconds, entities, .. } => {
             let kept = if *kept > 0 { format!(", {kept} of them kept") } else { String::new() };
-            format!("Baked {texels} texels{kept}\non {entities} objects in {}", time(*seconds))
+            let (texels, objects) = (counted(*texels, "texel"), counted(*entities as u64, "object"));
+            format!("Baked {texels}{kept}\non {objects} in {}", time(*seconds))
         }
         KilnEnding::Planned(plan) => plan_line(plan),
         KilnEnding::Failed { cancelled: true, .. } => "Stopped".to_owned(),
@@ -49,14 +63,17 @@ fn of_ending(ending: &KilnEnding) -> String {
 fn plan_line(plan: &BakePlan) -> String {
     let megabytes = plan.memory_bytes as f64 / 1e6;
     let memory = if megabytes < 9.95 { format!("{megabytes:.1} MB") } else { format!("{megabytes:.0} MB") };
-    let textures = if plan.pages == 1 { "1 texture".to_owned() } else { format!("{} textures", plan.pages) };
-    format!("{} texels in {textures}\n{memory} while it bakes", plan.texels)
+    let (texels, textures) = (counted(plan.texels, "texel"), counted(plan.pages.into(), "texture"));
+    format!("{texels} in {textures}\n{memory} while it bakes")
 }
 
-/// A price on its button; the one that the next bake has for its goal is marked.
-pub(super) fn price(price: &Prediction, goal: BakeGoal) -> String {
-    let mark = if goal == BakeGoal::Error(price.error) { "> " } else { "" };
-    format!("{mark}{} in {}", percent(price.error), time(price.seconds))
+fn counted(count: u64, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
+/// A price on its button.
+pub(super) fn price(price: &Prediction) -> String {
+    format!("{} in {}", percent(price.error), time(price.seconds))
 }
 
 /// The effects that a plan simulates, by name and share of the time.
@@ -98,9 +115,8 @@ mod tests {
     }
 
     #[test]
-    fn the_price_that_is_chosen_is_marked() {
-        let offer = Prediction { error: 0.02, seconds: 12.0 };
-        assert_eq!(price(&offer, BakeGoal::Error(0.05)), "2.0 % in 12 s");
-        assert_eq!(price(&offer, BakeGoal::Error(0.02)), "> 2.0 % in 12 s");
+    fn what_is_one_is_told_as_one() {
+        assert_eq!((counted(1, "object"), counted(2, "object")), ("1 object".to_owned(), "2 objects".to_owned()));
+        assert_eq!(price(&Prediction { error: 0.02, seconds: 12.0 }), "2.0 % in 12 s");
     }
 }
