@@ -8,6 +8,7 @@ mod common;
 mod compare;
 mod example;
 mod examples;
+mod frames;
 mod live;
 mod mask;
 mod overlay;

@@ -2,9 +2,7 @@
 //! the best that an ambient cube can do there.
 
 use crate::common::volume::{Bound, look_up};
-use bevy_kiln::bake::{
-    CancelToken, MeterPoint, MeterSettings, VolumeBoxes, VolumeSettings, bake_volumes, measure_irradiance,
-};
+use bevy_kiln::bake::{CancelToken, MeterPoint, MeterSettings, VolumeSettings, bake_volumes, measure_irradiance};
 use bevy_kiln::math::{AmbientCube, FACES, luminance, square_to_uniform_sphere};
 use bevy_kiln::scene::Scene;
 use bevy_kiln::trace::{Tracer, Transport};
@@ -138,9 +136,8 @@ fn judge(truth: &[Vec<DVec3>], shown: impl Fn(usize, Vec3) -> DVec3) -> Verdict 
 }
 
 /// Bakes the volumes and looks at the light that they show at the places, where `paths` tell the truth for each normal.
-pub fn check(name: &str, scene: &Scene, places: &[Vec3], paths: u32, boxes: VolumeBoxes) {
-    let settings = VolumeSettings { boxes, ..VolumeSettings::default() };
-    let bake = bake_volumes(scene, &settings, &(), &CancelToken::default()).unwrap();
+pub fn check(name: &str, scene: &Scene, places: &[Vec3], paths: u32, settings: &VolumeSettings) {
+    let bake = bake_volumes(scene, settings, &(), &CancelToken::default()).unwrap();
     let truth = truth(scene, places, paths);
     let bound: Vec<Bound> = bake.volumes.iter().map(Bound::new).collect();
     let shown = |place: usize, normal: Vec3| look_up(&bound, places[place], normal).as_dvec3();
