@@ -12,6 +12,8 @@ use std::path::PathBuf;
 /// What is pressed once the scene is there.
 #[derive(Clone, Copy, Debug)]
 pub struct Unattended {
+    /// What is set before.
+    pub prepare: fn(&mut World),
     /// Keys, all in the same frame.
     pub keys: &'static [KeyCode],
     /// Whether there is more to wait for than what is on the screen.
@@ -28,6 +30,7 @@ const PATIENCE: f32 = 400.0;
 #[derive(Resource)]
 struct Run {
     path: PathBuf,
+    prepare: fn(&mut World),
     keys: &'static [KeyCode],
     is_busy: fn(&World) -> bool,
     is_there: bool,
@@ -42,20 +45,24 @@ impl Plugin for Unattended {
     fn build(&self, app: &mut App) {
         let mut words = std::env::args().skip_while(|word| word != "--screenshot").skip(1);
         let Some(path) = words.next().map(PathBuf::from) else { return };
-        let Self { keys, is_busy } = *self;
+        let Self { prepare, keys, is_busy } = *self;
         let (is_there, is_taken, shown, frames, since) = (false, false, 0, 0, 0.0);
-        app.insert_resource(Run { path, keys, is_busy, is_there, shown, frames, since, is_taken })
+        app.insert_resource(Run { path, prepare, keys, is_busy, is_there, shown, frames, since, is_taken })
             .add_systems(PreUpdate, press.after(bevy::input::InputSystems))
             .add_systems(Update, (look, wait).chain())
             .add_observer(|_: On<WorldInstanceReady>, mut run: ResMut<Run>| run.is_there = true);
     }
 }
 
-fn press(mut run: ResMut<Run>, mut keyboard: ResMut<ButtonInput<KeyCode>>) {
-    if std::mem::take(&mut run.is_there) {
-        let keys = std::mem::take(&mut run.keys);
-        keys.iter().for_each(|key| keyboard.press(*key));
+fn press(world: &mut World) {
+    let mut run = world.resource_mut::<Run>();
+    if !std::mem::take(&mut run.is_there) {
+        return;
     }
+    let (prepare, keys) = (run.prepare, std::mem::take(&mut run.keys));
+    prepare(world);
+    let mut keyboard = world.resource_mut::<ButtonInput<KeyCode>>();
+    keys.iter().for_each(|key| keyboard.press(*key));
 }
 
 /// Whether a bake is going on, which only the example knows.

@@ -20,6 +20,7 @@ use unattended::Unattended;
 
 /// For a run without a person.
 const UNATTENDED: Unattended = Unattended {
+    prepare: |_| {},
     keys: &[KeyCode::ControlLeft, KeyCode::KeyB],
     is_busy: |world| world.resource::<BakeStatus>().running().is_some(),
 };

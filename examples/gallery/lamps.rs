@@ -14,10 +14,10 @@ const SIZE: Vec2 = Vec2::new(1.75, 0.38);
 const POWER: f32 = 7500.0;
 
 pub fn plugin(app: &mut App) {
-    app.add_systems(Startup, hang);
+    app.add_systems(Startup, show).add_observer(hang);
 }
 
-/// The lights, for a scene on other render layers as well. The world's axes are theirs.
+/// The lights. The world's axes are theirs.
 pub fn lights() -> impl Iterator<Item = impl Bundle> {
     PLACES.into_iter().enumerate().map(|(number, place)| {
         let light = RectLight {
@@ -31,10 +31,14 @@ pub fn lights() -> impl Iterator<Item = impl Bundle> {
     })
 }
 
-fn hang(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, mut materials: ResMut<Assets<StandardMaterial>>) {
+/// Below the scene's root, where a baked folder looks for what it knows.
+fn hang(root: On<Add, WorldAssetRoot>, mut commands: Commands) {
     for light in lights() {
-        commands.spawn(light);
+        commands.spawn((light, ChildOf(root.entity)));
     }
+}
+
+fn show(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, mut materials: ResMut<Assets<StandardMaterial>>) {
     // Bevy draws no light itself. Without a mark these panes take no part in the bake, which has the lights.
     let pane = meshes.add(Rectangle::from_size(SIZE));
     let glow = materials.add(StandardMaterial { base_color: Color::srgb(1.0, 0.96, 0.9), unlit: true, ..default() });

@@ -5,7 +5,6 @@
 //! ever meets it.
 
 use crate::common::room::Orbit;
-use crate::lamps;
 use bevy::camera::visibility::{NoFrustumCulling, RenderLayers};
 use bevy::camera::{Exposure, SubCameraView, Viewport};
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
@@ -92,9 +91,6 @@ fn come_and_go(
 
 fn spawn(commands: &mut Commands, room: WorldAssetRoot) {
     commands.spawn((Before, room));
-    for light in lamps::lights() {
-        commands.spawn((Before, light, RenderLayers::layer(LAYER)));
-    }
     commands.spawn((
         Before,
         BeforeCamera,

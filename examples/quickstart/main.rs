@@ -13,6 +13,7 @@ use unattended::Unattended;
 
 /// For a run without a person.
 const UNATTENDED: Unattended = Unattended {
+    prepare: |world| world.resource_mut::<NextBake>().goal = BakeGoal::Error(0.2),
     keys: &[KeyCode::ControlLeft, KeyCode::KeyB],
     is_busy: |world| world.resource::<BakeStatus>().running().is_some(),
 };

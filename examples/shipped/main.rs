@@ -15,6 +15,7 @@ mod reflections;
 mod unattended;
 
 use bevy::prelude::*;
+use bevy::world_serialization::WorldInstanceReady;
 use bevy_kiln::plugin::AppliedLightmaps;
 use bevy_kiln::prelude::*;
 use std::f32::consts::TAU;
@@ -30,12 +31,13 @@ fn main() -> AppExit {
             KilnPlugin,
             lamps::plugin,
             reflections::plugin,
-            unattended::Unattended { keys: &[], is_busy: |_| false },
+            unattended::Unattended { prepare: |_| {}, keys: &[], is_busy: |_| false },
         ))
         .insert_resource(GlobalAmbientLight::NONE)
         .insert_resource(ClearColor(Color::srgb(0.86, 0.93, 1.0)))
         .add_systems(Startup, open)
         .add_systems(Update, (swing, report))
+        .add_observer(cast_shadows)
         .run()
 }
 
@@ -49,6 +51,11 @@ fn open(mut commands: Commands, assets: Res<AssetServer>) {
         TextShadow::default(),
         Node { position_type: PositionType::Absolute, left: px(12), bottom: px(10), ..default() },
     ));
+}
+
+/// What stays of a baked sun is its gloss, which would shine through walls.
+fn cast_shadows(_: On<WorldInstanceReady>, mut suns: Query<&mut DirectionalLight>) {
+    suns.iter_mut().for_each(|mut sun| sun.shadow_maps_enabled = true);
 }
 
 /// The camera of the file looks around, but for a picture.
