@@ -30,7 +30,7 @@ pub struct Args {
 
 /// What to do.
 pub enum Call {
-    Run(Args),
+    Run(Box<Args>),
     Help,
 }
 
@@ -76,7 +76,7 @@ impl Args {
         if args.folder.is_some() && args.save.is_some() {
             return Err("--folder shows a bake of before, and there is none to --save".into());
         }
-        Ok(Call::Run(args))
+        Ok(Call::Run(Box::new(args)))
     }
 }
 

@@ -35,7 +35,8 @@ pub fn plugin(app: &mut App) {
         .insert_resource(GlobalAmbientLight::NONE)
         .add_systems(Startup, open)
         .add_systems(Update, (notice_failure.run_if(resource_exists::<Room>), orbit))
-        .add_observer(ready);
+        .add_observer(mark)
+        .add_observer(look);
 }
 
 fn open(args: Res<Args>, assets: Res<AssetServer>, mut commands: Commands) {
@@ -43,7 +44,7 @@ fn open(args: Res<Args>, assets: Res<AssetServer>, mut commands: Commands) {
     commands.insert_resource(ClearColor(stage.background));
     let scene = assets.load(GltfAssetLabel::Scene(0).from_asset(stage.file));
     commands.insert_resource(Room(scene.clone()));
-    // Everything in the file receives a lightmap, but for what `ready` marks otherwise.
+    // Everything in the file receives a lightmap, but for what `mark` marks otherwise.
     commands.spawn((WorldAssetRoot(scene), LightmapReceiver::default()));
     commands.spawn((
         Camera3d::default(),
@@ -71,18 +72,14 @@ fn notice_failure(
 type FileCamera<'a> = (&'a Transform, &'a Projection, &'a mut Camera);
 type OwnCamera<'a> = (&'a mut Transform, &'a mut Projection, &'a mut Orbit);
 
-/// The room is there: takes over the view of the file's camera, and marks the lamp.
-fn ready(
+/// The room is there: takes over the view of the file's camera. An example may have scenes of its own besides.
+fn look(
     ready: On<WorldInstanceReady>,
     rooms: Query<(), With<LightmapReceiver>>,
-    names: Query<(Entity, &Name)>,
     mut theirs: Query<FileCamera, (With<Camera3d>, Without<Orbit>)>,
     own: Single<OwnCamera>,
-    mut suns: Query<&mut DirectionalLight>,
     mut status: ResMut<Status>,
-    mut commands: Commands,
 ) {
-    // An example may have scenes of its own besides.
     if !rooms.contains(ready.entity) {
         return;
     }
@@ -94,6 +91,15 @@ fn ready(
         (orbit.yaw, orbit.pitch, _) = view.rotation.to_euler(EulerRot::YXZ);
         orbit.target = view.translation + view.forward() * orbit.distance;
     }
+    *status = Status::Dark;
+}
+
+fn mark(
+    _: On<WorldInstanceReady>,
+    names: Query<(Entity, &Name)>,
+    mut suns: Query<&mut DirectionalLight>,
+    mut commands: Commands,
+) {
     // What stays of a baked sun is its gloss, which would shine through walls.
     for mut sun in &mut suns {
         sun.shadow_maps_enabled = true;
@@ -102,7 +108,6 @@ fn ready(
     for (lamp, _) in names.iter().filter(|(_, name)| name.as_str() == "lamp") {
         commands.entity(lamp).insert(LightBlocker);
     }
-    *status = Status::Dark;
 }
 
 fn orbit(

@@ -13,7 +13,7 @@ use std::process::exit;
 /// Does what the command line asks for.
 pub fn run(stage: Stage) -> AppExit {
     let args = match Args::parse(stage, std::env::args().skip(1)) {
-        Ok(Call::Run(args)) => args,
+        Ok(Call::Run(args)) => *args,
         Ok(Call::Help) => {
             println!("{}", usage(&stage));
             return AppExit::Success;

@@ -22,7 +22,8 @@ struct Help;
 pub fn plugin(app: &mut App) {
     app.add_systems(Startup, open)
         .add_systems(Update, say_what_failed.run_if(resource_exists::<Opened>))
-        .add_observer(ready);
+        .add_observer(look)
+        .add_observer(light);
 }
 
 fn open(args: Res<Args>, assets: Res<AssetServer>, mut commands: Commands) {
@@ -47,20 +48,19 @@ fn say_what_failed(opened: Res<Opened>, assets: Res<AssetServer>, mut help: Sing
     }
 }
 
+type FileCamera<'a> = (&'a Transform, &'a Projection, &'a mut Camera);
+type OwnCamera<'a> = (&'a mut Transform, &'a mut Projection, &'a mut FreeCamera);
 type Meshes<'a> = (&'a Mesh3d, &'a GlobalTransform);
 
-/// Looks at the scene as its own camera does, or from outside; lights it where nothing does.
-fn ready(
+/// Looks at the scene as its own camera does, or from outside. How dense a first bake is follows from how large it is.
+fn look(
     _: On<WorldInstanceReady>,
     args: Res<Args>,
     things: Query<Meshes>,
     meshes: Res<Assets<Mesh>>,
-    mut theirs: Query<(&Transform, &Projection, &mut Camera), (With<Camera3d>, Without<FreeCamera>)>,
-    own: Single<(&mut Transform, &mut Projection, &mut FreeCamera)>,
-    lights: Query<(), Or<(With<DirectionalLight>, With<PointLight>, With<SpotLight>)>>,
-    mut suns: Query<&mut DirectionalLight>,
+    mut theirs: Query<FileCamera, (With<Camera3d>, Without<FreeCamera>)>,
+    own: Single<OwnCamera>,
     mut next: ResMut<NextBake>,
-    mut commands: Commands,
 ) {
     let (mut place, mut lens, mut camera) = own.into_inner();
     let (low, high, area) = extent(&things, &meshes);
@@ -76,21 +76,27 @@ fn ready(
         (lens.near, lens.far) = (lens.near.min(1e-3 * size), lens.far.max(4.0 * size));
     }
     (camera.walk_speed, camera.run_speed) = (0.15 * size, 0.6 * size);
+    next.goal = BakeGoal::Error(args.error);
+    next.density = args.density.unwrap_or((TEXELS / area.max(1e-6)).sqrt().clamp(DENSITIES[0], DENSITIES[1]));
+}
+
+type Lights = Or<(With<DirectionalLight>, With<PointLight>, With<SpotLight>)>;
+
+/// Lights what has no light of its own.
+fn light(
+    _: On<WorldInstanceReady>,
+    lights: Query<(), Lights>,
+    mut suns: Query<&mut DirectionalLight>,
+    mut next: ResMut<NextBake>,
+    mut commands: Commands,
+) {
     suns.iter_mut().for_each(|mut sun| sun.shadow_maps_enabled = true);
-    let mut sky = Vec3::ZERO;
     if lights.is_empty() {
-        sky = Vec3::new(2000.0, 2500.0, 3500.0);
+        next.scene.sky_radiance = Vec3::new(2000.0, 2500.0, 3500.0);
         let sun = DirectionalLight { illuminance: 20_000.0, shadow_maps_enabled: true, ..default() };
         commands.spawn((sun, Transform::default().looking_to(Vec3::new(-0.5, -1.0, -0.35), Vec3::Y)));
         commands.insert_resource(ClearColor(Color::srgb(0.8, 0.87, 1.0)));
     }
-    let density = args.density.unwrap_or((TEXELS / area.max(1e-6)).sqrt().clamp(DENSITIES[0], DENSITIES[1]));
-    next.0 = BakeLightmaps {
-        goal: BakeGoal::Error(args.error),
-        density,
-        scene: SceneSettings { sky_radiance: sky, ..default() },
-        ..default()
-    };
 }
 
 /// The box around everything [m], and how much surface is in it [m²].

@@ -142,13 +142,14 @@ fn dress(
 }
 
 type Looks<'a> = (&'a Transform, &'a Projection, &'a Exposure, &'a Tonemapping);
+type IsBaked = (With<Orbit>, Without<BeforeCamera>);
 type LooksToo<'a> = (&'a mut Transform, &'a mut Projection, &'a mut Exposure, &'a mut Tonemapping);
 
 /// Each camera draws its part of the same view.
 fn split(
     slider: Res<Slider>,
     window: Single<&Window, With<PrimaryWindow>>,
-    baked: Single<(&mut Camera, Looks), (With<Orbit>, Without<BeforeCamera>)>,
+    baked: Single<(&mut Camera, Looks), IsBaked>,
     before: Option<Single<(&mut Camera, LooksToo), With<BeforeCamera>>>,
     line: Option<Single<&mut Node, With<Line>>>,
 ) {
