@@ -13,7 +13,7 @@ pub fn plugin(app: &mut App) {
 }
 
 fn put_on(
-    roots: Query<Entity, Added<WorldAssetRoot>>,
+    roots: Query<Entity, (Added<WorldAssetRoot>, With<LightmapReceiver>)>,
     args: Res<Args>,
     assets: Res<AssetServer>,
     mut status: ResMut<Status>,

@@ -13,6 +13,8 @@ const SIZE: Vec2 = Vec2::new(1.75, 0.38);
 /// What each sends out [lm].
 const POWER: f32 = 7500.0;
 
+const COLOUR: Color = Color::srgb(1.0, 0.95, 0.88);
+
 pub fn plugin(app: &mut App) {
     app.add_systems(Startup, show).add_observer(hang);
 }
@@ -20,19 +22,17 @@ pub fn plugin(app: &mut App) {
 /// The lights. The world's axes are theirs.
 pub fn lights() -> impl Iterator<Item = impl Bundle> {
     PLACES.into_iter().enumerate().map(|(number, place)| {
-        let light = RectLight {
-            color: Color::srgb(1.0, 0.95, 0.88),
-            intensity: POWER,
-            width: SIZE.x,
-            height: SIZE.y,
-            range: 20.0,
-        };
+        let light = RectLight { color: COLOUR, intensity: POWER, width: SIZE.x, height: SIZE.y, range: 20.0 };
         (Name::new(format!("ceiling light {number}")), light, facing(place, Dir3::NEG_Y))
     })
 }
 
-/// Below the scene's root, where a baked folder looks for what it knows.
-fn hang(root: On<Add, WorldAssetRoot>, mut commands: Commands) {
+/// Below the scene's root, where a baked folder looks for what it knows. Below the first only: a copy on a render layer
+/// of its own would share them (see `slider`).
+fn hang(root: On<Add, WorldAssetRoot>, roots: Query<(), With<WorldAssetRoot>>, mut commands: Commands) {
+    if roots.iter().count() > 1 {
+        return;
+    }
     for light in lights() {
         commands.spawn((light, ChildOf(root.entity)));
     }

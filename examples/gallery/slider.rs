@@ -1,8 +1,8 @@
 //! A line across the window: left of it the scene as Bevy shows it by itself, right of it in baked light.
 //!
-//! Left is a second copy of the scene on a render layer of its own, with the same lights, their shadow maps and
-//! what the reflection probe adds as ambient light, seen by a second camera. It is there only while a finished bake is shown, so that no bake
-//! ever meets it.
+//! Left is a second copy of the scene on a render layer of its own, with the sun, its shadow map and what the
+//! reflection probe adds as ambient light, but without lamps: the gloss of those was seen on both layers (Bevy 0.19). A
+//! second camera sees it. It is there only while a finished bake is shown, so that no bake ever meets it.
 
 use crate::common::room::Orbit;
 use bevy::camera::visibility::{NoFrustumCulling, RenderLayers};
@@ -135,6 +135,9 @@ fn dress(
             continue;
         }
         commands.entity(entity).insert(RenderLayers::layer(LAYER));
+        if lamps.contains(entity) {
+            commands.entity(entity).remove::<PointLight>();
+        }
         if let Ok(mut camera) = cameras.get_mut(entity) {
             camera.is_active = false;
         }

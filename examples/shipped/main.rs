@@ -53,9 +53,10 @@ fn open(mut commands: Commands, assets: Res<AssetServer>) {
     ));
 }
 
-/// What stays of a baked sun is its gloss, which would shine through walls.
-fn cast_shadows(_: On<WorldInstanceReady>, mut suns: Query<&mut DirectionalLight>) {
+/// What stays of baked lights is their gloss, which would shine through walls.
+fn cast_shadows(_: On<WorldInstanceReady>, mut suns: Query<&mut DirectionalLight>, mut lamps: Query<&mut PointLight>) {
     suns.iter_mut().for_each(|mut sun| sun.shadow_maps_enabled = true);
+    lamps.iter_mut().for_each(|mut lamp| lamp.shadow_maps_enabled = true);
 }
 
 /// The camera of the file looks around, but for a picture.

@@ -18,9 +18,9 @@ fn pictures() -> PathBuf {
     folder
 }
 
-/// Runs the example; `None` where there is nothing to draw with.
-fn picture_of(example: &str, arguments: &[&str]) -> Option<Shown> {
-    let file = pictures().join(format!("{example}.png"));
+/// Runs the example and keeps its picture by that name; `None` where there is nothing to draw with.
+fn picture_of(example: &str, name: &str, arguments: &[&str]) -> Option<Shown> {
+    let file = pictures().join(format!("{name}.png"));
     let mut command = under_a_display(example)?;
     command.args(arguments).arg("--screenshot").arg(&file);
     let output = command.env("BEVY_ASSET_ROOT", env!("CARGO_MANIFEST_DIR")).output().unwrap();
@@ -55,7 +55,7 @@ fn share(shown: &Shown, part: Part, is_so: impl Fn(DVec3) -> bool) -> f64 {
 
 #[test]
 fn quickstart_lights_the_room_at_a_key() {
-    let Some(shown) = picture_of("quickstart", &[]) else { return };
+    let Some(shown) = picture_of("quickstart", "quickstart", &[]) else { return };
     // Its walls have no light but what was baked.
     let (red, green) = (mean(&shown, [0.25, 0.4, 0.3, 0.6]), mean(&shown, [0.72, 0.3, 0.76, 0.6]));
     assert!(red.x > 0.05 && red.x > 5.0 * red.y, "the left wall is {red}");
@@ -65,17 +65,24 @@ fn quickstart_lights_the_room_at_a_key() {
 #[test]
 fn the_gallery_is_lit_right_of_its_line_and_a_shipped_game_shows_the_same() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/baked/gallery");
-    let Some(gallery) = picture_of("gallery", &["--folder", folder]) else { return };
-    let Some(shipped) = picture_of("shipped", &[]) else { return };
+    let Some(gallery) = picture_of("gallery", "gallery_folder", &["--folder", folder]) else { return };
+    let Some(shipped) = picture_of("shipped", "shipped", &[]) else { return };
     assert_eq!([gallery.width, gallery.height], [shipped.width, shipped.height]);
-    // Between the line, which has a word at either side, and what the shipped game writes below.
+    // Right of the line and its word, above what the shipped game writes; in fields, since one of the two dithers.
     let baked = [0.4, 0.05, 1.0, 0.9];
-    let differs = |pixel: usize| (gallery.linear[pixel] - shipped.linear[pixel]).abs().max_element();
-    let pixels = inside(&gallery, baked);
-    let difference = pixels.iter().map(|&pixel| differs(pixel)).sum::<f64>() / pixels.len() as f64;
+    let fields = (0..12).flat_map(|column| (0..10).map(move |row| (f64::from(column), f64::from(row))));
+    let fields = fields.map(|(column, row)| {
+        let (left, top) = (0.4 + 0.05 * column, 0.05 + 0.085 * row);
+        [left, top, left + 0.05, top + 0.085]
+    });
+    let differences: Vec<f64> =
+        fields.map(|field| (mean(&gallery, field) - mean(&shipped, field)).abs().max_element()).collect();
+    let (mean_of_them, largest) =
+        (differences.iter().sum::<f64>() / differences.len() as f64, differences.iter().copied().fold(0.0, f64::max));
     let light = mean(&shipped, baked).element_sum() / 3.0;
     assert!(light > 0.03, "the gallery is dark: {light}");
-    assert!(difference < 0.01 * light, "{difference} of {light}");
+    // The sun's gloss stays real time, and the cascades of its shadow map are laid out for each view.
+    assert!(mean_of_them < 0.005 * light && largest < 0.04 * light, "{mean_of_them}, {largest} of {light}");
     // Left of it the same room has another light.
     let before = [0.02, 0.05, 0.25, 0.9];
     let difference = (mean(&gallery, before) - mean(&shipped, before)).abs().max_element();
@@ -84,14 +91,16 @@ fn the_gallery_is_lit_right_of_its_line_and_a_shipped_game_shows_the_same() {
 
 #[test]
 fn the_gallery_bakes() {
-    let Some(shown) = picture_of("gallery", &["--spp", "8", "--density", "4", "--size", "640x360"]) else { return };
+    let Some(shown) = picture_of("gallery", "gallery", &["--spp", "8", "--density", "4", "--size", "640x360"]) else {
+        return;
+    };
     assert!(mean(&shown, [0.4, 0.1, 1.0, 0.9]).min_element() > 0.02);
 }
 
 #[test]
 fn the_editor_shows_its_panel_over_a_baked_scene() {
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenes/cornell_box.glb");
-    let Some(shown) = picture_of("editor", &[scene, "--error", "20%", "--density", "8"]) else { return };
+    let Some(shown) = picture_of("editor", "editor", &[scene, "--error", "20%", "--density", "8"]) else { return };
     let is_red = |light: DVec3| light.x > 0.04 && light.x > 4.0 * light.y;
     assert!(share(&shown, ALL, is_red) > 0.03, "the red wall is not lit");
     let is_blue = |light: DVec3| light.z > 0.3 && light.z > 3.0 * light.x;
@@ -101,13 +110,13 @@ fn the_editor_shows_its_panel_over_a_baked_scene() {
 #[test]
 fn what_moves_is_lit_by_the_volume() {
     let bake = ["--spp", "8", "--density", "4", "--size", "640x360"];
-    let Some(shown) = picture_of("volume", &bake) else { return };
+    let Some(shown) = picture_of("volume", "volume", &bake) else { return };
     assert!(share(&shown, ALL, |light| light.min_element() > 0.02) > 0.5, "the room is dark");
 }
 
 #[test]
 fn the_furnished_room_bakes() {
     let bake = ["--spp", "8", "--density", "4", "--size", "640x360", "--bicubic"];
-    let Some(shown) = picture_of("furnished", &bake) else { return };
+    let Some(shown) = picture_of("furnished", "furnished", &bake) else { return };
     assert!(share(&shown, ALL, |light| light.min_element() > 0.02) > 0.5, "the room is dark");
 }
