@@ -3,7 +3,6 @@
 use super::args::Args;
 use bevy::prelude::*;
 use bevy_kiln::bake::Stage;
-use bevy_kiln::output::{OutputFormat, write_bake};
 use bevy_kiln::prelude::*;
 
 /// Where things stand.
@@ -77,10 +76,7 @@ pub fn start(args: &Args, status: &mut Status, commands: &mut Commands) {
 
 /// The lightmaps are on the screen; `--save` keeps them as a folder, too.
 fn finished(done: On<BakeFinished>, args: Res<Args>, mut status: ResMut<Status>) {
-    let written = args.save.as_ref().map_or(Ok(()), |folder| {
-        let scene = args.stage.file;
-        write_bake(&done.lightmap, &done.volumes, scene, folder, OutputFormat::Rgb9e5).map(|_| ())
-    });
+    let written = args.save.as_ref().map_or(Ok(()), |folder| done.save(folder));
     *status = match written {
         Ok(()) => Status::Lit(done.event().clone()),
         Err(error) => Status::Failed(error.to_string()),

@@ -30,7 +30,8 @@ impl Plugin for KilnShortcuts {
 }
 
 fn heed(keys: Res<ButtonInput<KeyCode>>, mut kiln: KilnControl) {
-    let is_held = |pair: [KeyCode; 2]| keys.any_pressed(pair);
+    // A chord that is over within one slow frame counts as well.
+    let is_held = |pair: [KeyCode; 2]| keys.any_pressed(pair) || keys.any_just_released(pair);
     let command = if cfg!(target_os = "macos") {
         [KeyCode::SuperLeft, KeyCode::SuperRight]
     } else {

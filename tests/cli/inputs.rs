@@ -56,6 +56,13 @@ fn extensions_that_are_not_read_are_named() {
 }
 
 #[test]
+fn fans_of_triangles_are_said_not_to_be_read() {
+    const TRIANGLE_FAN: u32 = 6;
+    let (_folder, output) = bake_spoilt(|glb| glb.primitive("floor")["mode"] = TRIANGLE_FAN.into());
+    assert_fails(&output, 1, "spoilt.glb has triangle fans or line loops, which Bevy does not read");
+}
+
+#[test]
 fn a_normal_that_is_no_number_is_named() {
     let spoilt = bake_spoilt(|glb| {
         let normals = glb.primitive("floor")["attributes"]["NORMAL"].as_u64().unwrap();

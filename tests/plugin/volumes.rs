@@ -3,7 +3,6 @@
 use super::*;
 use bevy::image::ImageSampler;
 use bevy::light::{IrradianceVolume, LightProbe};
-use bevy_kiln::output::{OutputFormat, write_bake};
 use temp_dir::TempDir;
 
 /// The boxes of the volumes in the world: centre, size and probes along each axis.
@@ -99,7 +98,7 @@ fn a_folder_brings_its_volumes_along() {
     app.update();
 
     let folder = TempDir::new().unwrap();
-    write_bake(&done.lightmap, &done.volumes, "cornell", folder.path(), OutputFormat::Rgb9e5).unwrap();
+    done.save(folder.path()).unwrap();
     let mut roots = app.world_mut().query_filtered::<Entity, With<WorldAssetRoot>>();
     let root = roots.single(app.world()).unwrap();
     let baked: Handle<BakedFolder> = app.world().resource::<AssetServer>().load(folder.path().join("kiln.ron"));

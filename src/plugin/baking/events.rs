@@ -9,9 +9,11 @@ use crate::bake::{
     BakeError, BakePlan, BakeSettings, CancelToken, Denoise, Goal, LaterBounces, Layout, Lightmap, Progress, Stage,
     Volume,
 };
+use crate::output::{OutputError, OutputFormat, write_bake};
 use crate::trace::{Estimator, ForcedEffects, Sharing, Transport};
 use bevy::prelude::*;
 use std::num::NonZeroUsize;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -297,12 +299,35 @@ pub struct BakeFinished {
     pub entities: usize,
     /// What was left out or changed.
     pub warnings: Vec<KilnWarning>,
-    /// The whole result with its report, to be written with `output::write_bake`.
+    /// The whole result with its report.
     #[reflect(ignore)]
     pub lightmap: Arc<Lightmap>,
     /// The irradiance volumes.
     #[reflect(ignore)]
     pub volumes: Arc<Vec<Volume>>,
+}
+
+impl BakeFinished {
+    /// Writes the bake into this folder, which a shipped game shows with
+    /// [`BakedLightmaps`](crate::plugin::BakedLightmaps), in textures of [`OutputFormat::Rgb9e5`]. The folder is made if
+    /// it is missing; a relative path starts where the program was started. [`write_bake`] has other formats.
+    ///
+    /// ```no_run
+    /// # use bevy::prelude::*;
+    /// # use bevy_kiln::prelude::*;
+    /// # let mut app = App::new();
+    /// app.add_observer(|done: On<BakeFinished>| done.save("assets/baked/level"));
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// What keeps the folder from being written; it stays as it was.
+    pub fn save(&self, folder: impl AsRef<Path>) -> Result<(), OutputError> {
+        let folder = folder.as_ref();
+        let scene = folder.file_name().unwrap_or_default().to_string_lossy();
+        write_bake(&self.lightmap, &self.volumes, &scene, folder, OutputFormat::Rgb9e5)?;
+        Ok(())
+    }
 }
 
 /// A plan is made. The world is as it was.

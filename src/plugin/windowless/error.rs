@@ -54,6 +54,12 @@ pub enum OpenError {
         /// What the loader said.
         reason: String,
     },
+    /// It holds fans of triangles or loops of lines, which Bevy's loader refuses.
+    #[error("{} has triangle fans or line loops, which Bevy does not read; export it as plain triangles", path.display())]
+    UnknownPrimitive {
+        /// The path asked for.
+        path: PathBuf,
+    },
     /// It requires an extension of glTF that Bevy does not read.
     #[error("{} requires {extension}, which Bevy does not read; export it without", path.display())]
     UnknownExtension {
@@ -86,6 +92,7 @@ impl OpenError {
         }
         if let AssetLoadError::AssetLoaderError(error) = error {
             match (error.error().downcast_ref::<GltfError>(), error.error().downcast_ref::<ImageLoaderError>()) {
+                (Some(GltfError::UnsupportedPrimitive { .. }), _) => return Self::UnknownPrimitive { path },
                 (Some(GltfError::ImageError(error)), _) => return bad_picture(first_line(error)),
                 (_, Some(ImageLoaderError::FileTexture(error))) => return bad_picture(first_line(error)),
                 _ => {}
