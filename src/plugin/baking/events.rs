@@ -316,7 +316,11 @@ impl BakeFinished {
     /// # use bevy::prelude::*;
     /// # use bevy_kiln::prelude::*;
     /// # let mut app = App::new();
-    /// app.add_observer(|done: On<BakeFinished>| done.save("assets/baked/level"));
+    /// app.add_observer(|done: On<BakeFinished>| {
+    ///     if let Err(why) = done.save("assets/baked/level") {
+    ///         error!("{why}");
+    ///     }
+    /// });
     /// ```
     ///
     /// # Errors
