@@ -37,14 +37,20 @@ fn bake(folder: &TempDir, options: &[&str]) {
 
 /// The scene with its folder, as a game shows it; the root is put elsewhere, as a game may.
 fn shown(mut game: App) -> (App, Entity) {
+    let root = run_until_shown(&mut game, 1);
+    (game, root)
+}
+
+/// The same in a game that has begun, with so many lightmaps.
+fn run_until_shown(game: &mut App, lightmaps: usize) -> Entity {
     let handle: Handle<Gltf> = game.world().resource::<AssetServer>().load("room.gltf");
-    run_until(&mut game, "the file", |world| world.resource::<AssetServer>().is_loaded_with_dependencies(&handle));
+    run_until(game, "the file", |world| world.resource::<AssetServer>().is_loaded_with_dependencies(&handle));
     let scene = game.world().resource::<Assets<Gltf>>().get(&handle).unwrap().scenes[0].clone();
     let baked: Handle<BakedFolder> = game.world().resource::<AssetServer>().load("baked/kiln.ron");
     let place = Transform::from_xyz(30.0, -4.0, 0.1).with_rotation(Quat::from_rotation_y(1.0));
     let root = game.world_mut().spawn((WorldAssetRoot(scene), BakedLightmaps(baked), place)).id();
-    run_until(&mut game, "the lightmap", |world| count::<Lightmap>(world) == 1);
-    (game, root)
+    run_until(game, "the lightmaps", |world| count::<Lightmap>(world) == lightmaps);
+    root
 }
 
 fn changed(folder: &TempDir) -> Vec<String> {
@@ -84,6 +90,57 @@ fn what_is_not_as_it_was_at_the_bake_is_named() {
     let start = text.find("    things: {").expect("the manifest says what things were like");
     std::fs::write(&manifest, format!("{})", &text[..start])).unwrap();
     assert_eq!(changed(&folder), [""; 0]);
+}
+
+/// A sun without a name and a stage with one, as code adds them to a scene file.
+fn add_in_code(world: &mut World) -> Entity {
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(Plane3d::default().mesh().size(2.0, 2.0));
+    let material = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial::default());
+    let stage = (Name::new("stage"), Mesh3d(mesh), MeshMaterial3d(material), LightmapReceiver::default());
+    world.spawn((stage, Transform::from_xyz(5.0, 0.0, 0.0)));
+    sun(world, Vec3::new(-0.5, -1.0, -0.3))
+}
+
+fn sun(world: &mut World, towards: Vec3) -> Entity {
+    world.spawn((DirectionalLight::default(), Transform::default().looking_to(towards, Vec3::Y))).id()
+}
+
+#[test]
+fn what_a_game_adds_in_code_is_found_again() {
+    let folder = TempDir::new().unwrap();
+    write(&folder, &room());
+    let mut editor = app(folder.path());
+    let handle: Handle<Gltf> = editor.world().resource::<AssetServer>().load("room.gltf");
+    run_until(&mut editor, "the file", |world| world.resource::<AssetServer>().is_loaded_with_dependencies(&handle));
+    let scene = editor.world().resource::<Assets<Gltf>>().get(&handle).unwrap().scenes[0].clone();
+    editor.world_mut().spawn(WorldAssetRoot(scene));
+    add_in_code(editor.world_mut());
+    run_until(&mut editor, "the scene", |world| count::<PointLight>(world) == 1);
+    let packed = BakeLightmaps { layout: LightmapLayout::Packed, density: 4.0, ..small() };
+    editor.world_mut().trigger(packed);
+    run_until_baked(&mut editor, 1).save(folder.path().join("baked")).unwrap();
+    assert_eq!(count::<Lightmap>(editor.world_mut()), 2);
+
+    let mut game = app(folder.path());
+    let world = game.world_mut();
+    let baked = add_in_code(world);
+    // What comes later and was never baked: another sun, a lamp that is carried, a crate.
+    let others = [sun(world, Vec3::NEG_Y), sun(world, Vec3::new(0.5, -1.0, 0.3))];
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(Cuboid::default());
+    let crate_ = world.spawn(Mesh3d(mesh)).id();
+    run_until_shown(&mut game, 2);
+    let lights_the_baked =
+        |sun: Entity| game.world().get::<DirectionalLight>(sun).unwrap().affects_lightmapped_mesh_diffuse;
+    assert!(!lights_the_baked(baked), "it would light the room twice");
+    assert!(others.into_iter().all(lights_the_baked));
+    assert!(!game.world().entity(crate_).contains::<Lightmap>());
+    let mut roots = game.world_mut().query::<(Entity, &AppliedLightmaps)>();
+    let (root, applied) = roots.single(game.world()).unwrap();
+    assert_eq!((applied.len(), applied.changed_since_bake()), (4, &[][..]), "the ground, its lamp, the stage, the sun");
+    game.world_mut().entity_mut(root).remove::<BakedLightmaps>();
+    game.update();
+    assert!(game.world().get::<DirectionalLight>(baked).unwrap().affects_lightmapped_mesh_diffuse);
+    assert_eq!(count::<Lightmap>(game.world_mut()), 0);
 }
 
 #[test]

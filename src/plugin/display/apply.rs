@@ -1,20 +1,18 @@
-//! Puts a loaded bake on the entities below a scene's root, as they come.
+//! Puts a loaded bake on its entities, as they come.
 
-use super::attach::{Shown, attach, detach};
-use super::filtering::FilteredBy;
-use super::fingerprint::fingerprint;
+use super::attach::{attach, detach};
+use super::find::{Found, Job, find};
 use super::mute::{MutedLight, mute_light, unmute_light};
 use super::out_of_date::sentence;
 use super::volume::{ShownVolume, despawn_volumes, spawn_volume};
 use super::{BakedFolder, stable_id};
-use crate::artefact::{Change, StableId};
-use bevy::light::RectLight;
-use bevy::pbr::Lightmap;
+use crate::artefact::StableId;
 use bevy::prelude::*;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 /// Lights what is below this entity with a baked folder. Put it beside the scene's root component; it finds the
-/// objects by their [`StableId`] as they spawn, and mutes the lights that the textures hold. A folder that is read anew
+/// objects by their [`StableId`] as they spawn, and mutes the lights that the textures hold. What the game itself adds
+/// outside of scene files, such as a sun, is found by its `Name`; without one, where it stands and is as it was baked. A folder that is read anew
 /// while the game runs is shown anew; another one takes the place of the one before once it is there.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default, Debug, Clone)]
@@ -25,13 +23,13 @@ pub struct BakedLightmaps(pub Handle<BakedFolder>);
 #[derive(Component, Clone, Debug, Default)]
 pub struct AppliedLightmaps {
     folder: Option<AssetId<BakedFolder>>,
-    done: HashSet<Entity>,
+    pub(super) done: HashSet<Entity>,
     /// What shows another folder, or this one as it was before it was read again, until this one is there.
     before: HashSet<Entity>,
     /// What was put into the world: irradiance volumes.
     volumes: Vec<Entity>,
     /// What was compared with how it was at the bake.
-    compared: HashSet<Entity>,
+    pub(super) compared: HashSet<Entity>,
     changed: Vec<StableId>,
 }
 
@@ -64,12 +62,6 @@ impl AppliedLightmaps {
         self.compared.clear();
         self.changed.clear();
     }
-}
-
-/// One thing that a folder says about an entity.
-enum Job {
-    Attach(Shown),
-    Mute,
 }
 
 /// Applies loaded folders to what has come below their roots since the last frame.
@@ -166,75 +158,4 @@ fn volumes_of(world: &World, folder: &Handle<BakedFolder>) -> Vec<ShownVolume> {
         falloff: volume.falloff,
     });
     shown.collect()
-}
-
-/// What there is to do below a root, and what was found on the way.
-#[derive(Default)]
-struct Found {
-    jobs: Vec<(Entity, Job)>,
-    compared: Vec<Entity>,
-    changed: Vec<(StableId, Change)>,
-}
-
-fn find(world: &World, root: Entity, folder: &Handle<BakedFolder>, applied: &AppliedLightmaps) -> Found {
-    let mut found = Found::default();
-    let Some(folder) = world.get_resource::<Assets<BakedFolder>>().and_then(|folders| folders.get(folder)) else {
-        return found;
-    };
-    if applied.done.len() >= folder.manifest.placements.len() + folder.manifest.baked_lights.len() {
-        return found;
-    }
-    let placements: HashMap<&StableId, Shown> = folder
-        .manifest
-        .placements
-        .iter()
-        .map(|placement| {
-            let lightmap = Lightmap {
-                image: folder.pages[placement.page as usize].clone(),
-                uv_rect: Rect { min: placement.uv_min.into(), max: placement.uv_max.into() },
-                ..default()
-            };
-            let layout = placement.mesh.and_then(|mesh| folder.meshes.get(mesh as usize)).cloned();
-            (&placement.id, Shown { lightmap, layout, filtered_by: FilteredBy::Plugin })
-        })
-        .collect();
-    let lights: HashSet<&StableId> = folder.manifest.baked_lights.iter().map(|light| &light.id).collect();
-    let mut below = vec![root];
-    while let Some(entity) = below.pop() {
-        below.extend(world.get::<Children>(entity).into_iter().flatten());
-        let (mesh, is_light) = (world.get::<Mesh3d>(entity), is_light(world, entity));
-        let is_known = applied.done.contains(&entity) && applied.compared.contains(&entity);
-        if is_known || (mesh.is_none() && !is_light) {
-            continue;
-        }
-        let id = stable_id(world, entity);
-        let is_mesh_loaded =
-            mesh.is_none_or(|mesh| world.get_resource::<Assets<Mesh>>().is_some_and(|meshes| meshes.contains(&mesh.0)));
-        if !applied.compared.contains(&entity)
-            && let Some(now) = fingerprint(world, entity)
-        {
-            let change = folder.manifest.things.get(&id).and_then(|before| before.change_to(&now));
-            found.changed.extend(change.map(|change| (id.clone(), change)));
-            found.compared.push(entity);
-        }
-        if applied.done.contains(&entity) {
-            continue;
-        }
-        if let Some(shown) = placements.get(&id).filter(|_| mesh.is_some() && is_mesh_loaded) {
-            found.jobs.push((entity, Job::Attach(shown.clone())));
-        }
-        if is_light && lights.contains(&id) {
-            found.jobs.push((entity, Job::Mute));
-        }
-    }
-    found.changed.sort_by(|(a, _), (b, _)| a.cmp(b));
-    found
-}
-
-fn is_light(world: &World, entity: Entity) -> bool {
-    let Ok(entity) = world.get_entity(entity) else { return false };
-    entity.contains::<RectLight>()
-        || entity.contains::<PointLight>()
-        || entity.contains::<SpotLight>()
-        || entity.contains::<DirectionalLight>()
 }

@@ -5,6 +5,7 @@ mod attach;
 mod attribute;
 mod extras;
 mod filtering;
+mod find;
 mod fingerprint;
 mod folder;
 mod light_baking;

@@ -6,6 +6,9 @@ use bevy::ecs::world::EntityRef;
 use bevy::prelude::*;
 use bevy::world_serialization::{DynamicWorldRoot, WorldAssetRoot};
 
+/// Stands for a name that is missing.
+const UNNAMED: &str = "unnamed";
+
 /// A name of your own for a thing and what is below it, where names from the file do not tell things apart: give
 /// one to each copy of the same scene, and to meshes that you spawn without a `Name`.
 #[derive(Component, Clone, Debug, Default, PartialEq, Eq, Hash, Reflect)]
@@ -39,10 +42,15 @@ pub fn stable_id(world: &World, entity: Entity) -> StableId {
     StableId::new(parts.join("/"))
 }
 
+/// Whether every part of an id is a name that somebody gave.
+pub(super) fn is_named(id: &StableId) -> bool {
+    !id.as_str().split('/').any(|part| part == UNNAMED || part.starts_with("unnamed["))
+}
+
 /// The entity's name, numbered if siblings before it have the same one.
 fn label(world: &World, entity: &EntityRef, parent: Option<Entity>) -> String {
     let name = entity.get::<Name>();
-    let text = name.map_or("unnamed", Name::as_str);
+    let text = name.map_or(UNNAMED, Name::as_str);
     let siblings = parent.and_then(|parent| world.get::<Children>(parent));
     let twins_before = siblings.map_or(0, |siblings| {
         let before = siblings.iter().take_while(|&sibling| sibling != entity.id());
@@ -68,6 +76,8 @@ mod tests {
         assert_eq!(id(twin_a), "Scene/wall");
         assert_eq!(id(twin_b), "Scene/wall[1]");
         assert_eq!(id(nameless), "Scene/wall[1]/unnamed");
+        let is_named = |entity| is_named(&stable_id(&world, entity));
+        assert!(is_named(twin_b) && !is_named(nameless));
     }
 
     #[test]
