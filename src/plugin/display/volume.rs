@@ -21,6 +21,9 @@ pub(crate) struct ShownVolume {
 
 /// Puts a volume into the world.
 pub(crate) fn spawn_volume(world: &mut World, volume: ShownVolume) -> Entity {
+    if cfg!(target_arch = "wasm32") {
+        warn_once!("Bevy 0.19 does not draw irradiance volumes in a browser, so what moves gets no baked light there");
+    }
     let ShownVolume { name, voxels, centre, rotation, size, falloff } = volume;
     let bundle = (
         BakedVolume,
