@@ -92,12 +92,13 @@ fn what_is_not_as_it_was_at_the_bake_is_named() {
     assert_eq!(changed(&folder), [""; 0]);
 }
 
-/// A sun without a name and a stage with one, as code adds them to a scene file.
+/// A sun without a name, a lantern and a stage with one, as code adds them to a scene file.
 fn add_in_code(world: &mut World) -> Entity {
     let mesh = world.resource_mut::<Assets<Mesh>>().add(Plane3d::default().mesh().size(2.0, 2.0));
     let material = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial::default());
     let stage = (Name::new("stage"), Mesh3d(mesh), MeshMaterial3d(material), LightmapReceiver::default());
     world.spawn((stage, Transform::from_xyz(5.0, 0.0, 0.0)));
+    world.spawn((Name::new("lantern"), PointLight::default(), Transform::from_xyz(5.0, 1.0, 0.0)));
     sun(world, Vec3::new(-0.5, -1.0, -0.3))
 }
 
@@ -115,7 +116,7 @@ fn what_a_game_adds_in_code_is_found_again() {
     let scene = editor.world().resource::<Assets<Gltf>>().get(&handle).unwrap().scenes[0].clone();
     editor.world_mut().spawn(WorldAssetRoot(scene));
     add_in_code(editor.world_mut());
-    run_until(&mut editor, "the scene", |world| count::<PointLight>(world) == 1);
+    run_until(&mut editor, "the scene", |world| count::<PointLight>(world) == 2);
     let packed = BakeLightmaps { layout: LightmapLayout::Packed, density: 4.0, ..small() };
     editor.world_mut().trigger(packed);
     run_until_baked(&mut editor, 1).save(folder.path().join("baked")).unwrap();
@@ -124,7 +125,8 @@ fn what_a_game_adds_in_code_is_found_again() {
     let mut game = app(folder.path());
     let world = game.world_mut();
     let baked = add_in_code(world);
-    // What comes later and was never baked: another sun, a lamp that is carried, a crate.
+    // What was never baked: other suns, a crate, and a lantern that is carried, of the same name as the baked one.
+    let carried = world.spawn((Name::new("lantern"), PointLight::default(), LightBaking::RealTime)).id();
     let others = [sun(world, Vec3::NEG_Y), sun(world, Vec3::new(0.5, -1.0, 0.3))];
     let mesh = world.resource_mut::<Assets<Mesh>>().add(Cuboid::default());
     let crate_ = world.spawn(Mesh3d(mesh)).id();
@@ -133,10 +135,12 @@ fn what_a_game_adds_in_code_is_found_again() {
         |sun: Entity| game.world().get::<DirectionalLight>(sun).unwrap().affects_lightmapped_mesh_diffuse;
     assert!(!lights_the_baked(baked), "it would light the room twice");
     assert!(others.into_iter().all(lights_the_baked));
+    let lantern = game.world().get::<PointLight>(carried).unwrap();
+    assert!(lantern.affects_lightmapped_mesh_diffuse && lantern.intensity > 0.0);
     assert!(!game.world().entity(crate_).contains::<Lightmap>());
     let mut roots = game.world_mut().query::<(Entity, &AppliedLightmaps)>();
     let (root, applied) = roots.single(game.world()).unwrap();
-    assert_eq!((applied.len(), applied.changed_since_bake()), (4, &[][..]), "the ground, its lamp, the stage, the sun");
+    assert_eq!((applied.len(), applied.changed_since_bake()), (5, &[][..]), "ground, lamp, stage, lantern, sun");
     game.world_mut().entity_mut(root).remove::<BakedLightmaps>();
     game.update();
     assert!(game.world().get::<DirectionalLight>(baked).unwrap().affects_lightmapped_mesh_diffuse);

@@ -12,8 +12,9 @@ use std::collections::HashSet;
 
 /// Lights what is below this entity with a baked folder. Put it beside the scene's root component; it finds the
 /// objects by their [`StableId`] as they spawn, and mutes the lights that the textures hold. What the game itself adds
-/// outside of scene files, such as a sun, is found by its `Name`; without one, where it stands and is as it was baked. A folder that is read anew
-/// while the game runs is shown anew; another one takes the place of the one before once it is there.
+/// outside of scene files, such as a sun, is found by its `Name`; without one, where it stands and is as it was baked.
+/// A folder that is read anew while the game runs is shown anew; another one takes the place of the one before once it
+/// is there.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default, Debug, Clone)]
 #[require(Transform, Visibility, AppliedLightmaps)]
@@ -64,7 +65,7 @@ impl AppliedLightmaps {
     }
 }
 
-/// Applies loaded folders to what has come below their roots since the last frame.
+/// Applies loaded folders to what has come since the last frame, below their roots and outside of files.
 pub(crate) fn apply_baked_lightmaps(world: &mut World) {
     let mut roots = world.query::<(Entity, &BakedLightmaps, &AppliedLightmaps)>();
     let roots: Vec<(Entity, Handle<BakedFolder>, AppliedLightmaps)> =

@@ -44,7 +44,9 @@ pub fn stable_id(world: &World, entity: Entity) -> StableId {
 
 /// Whether every part of an id is a name that somebody gave.
 pub(super) fn is_named(id: &StableId) -> bool {
-    !id.as_str().split('/').any(|part| part == UNNAMED || part.starts_with("unnamed["))
+    !id.as_str()
+        .split('/')
+        .any(|part| part.strip_prefix(UNNAMED).is_some_and(|rest| rest.is_empty() || rest.starts_with('[')))
 }
 
 /// The entity's name, numbered if siblings before it have the same one.
