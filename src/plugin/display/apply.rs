@@ -13,8 +13,8 @@ use std::collections::HashSet;
 /// Lights what is below this entity with a baked folder. Put it beside the scene's root component; it finds the
 /// objects by their [`StableId`] as they spawn, and mutes the lights that the textures hold. What the game itself adds
 /// outside of scene files, such as a sun, is found by its `Name`; without one, where it stands and is as it was baked.
-/// A folder that is read anew while the game runs is shown anew; another one takes the place of the one before once it
-/// is there.
+/// Nothing changes before all textures have come, so that no light goes off too early. A folder that is read anew while
+/// the game runs is shown anew; another one takes the place of the one before once it is there.
 #[derive(Component, Clone, Debug, Default, Reflect)]
 #[reflect(Component, Default, Debug, Clone)]
 #[require(Transform, Visibility, AppliedLightmaps)]
@@ -74,7 +74,10 @@ pub(crate) fn apply_baked_lightmaps(world: &mut World) {
         if applied.folder.is_some_and(|before| before != folder.id()) {
             applied.put_on_again();
         }
-        let is_new = applied.folder.is_none() && is_loaded(world, &folder);
+        let is_new = applied.folder.is_none();
+        if is_new && !is_there(world, &folder) {
+            continue;
+        }
         let Found { jobs, compared, changed } = find(world, root, &folder, &applied);
         if jobs.is_empty() && compared.is_empty() && !is_new {
             continue;
@@ -142,8 +145,15 @@ fn take_off(world: &mut World, entity: Entity) {
     }
 }
 
-fn is_loaded(world: &World, folder: &Handle<BakedFolder>) -> bool {
-    world.get_resource::<Assets<BakedFolder>>().is_some_and(|folders| folders.contains(folder))
+/// Whether a folder has come with all its textures, but for those that cannot be read. Before, its lights would be
+/// muted and nothing shine in their place.
+fn is_there(world: &World, folder: &Handle<BakedFolder>) -> bool {
+    let folder = world.get_resource::<Assets<BakedFolder>>().and_then(|folders| folders.get(folder));
+    let is_coming = |texture: &Handle<Image>| {
+        let server = world.get_resource::<AssetServer>();
+        server.and_then(|server| server.get_load_state(texture)).is_some_and(|state| state.is_loading())
+    };
+    folder.is_some_and(|folder| !folder.pages.iter().chain(&folder.volumes).any(is_coming))
 }
 
 /// The irradiance volumes of a folder, once it is loaded.
