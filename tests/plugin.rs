@@ -1,6 +1,8 @@
 //! The plugin in a running app without a renderer: a bake from its trigger to its components, and back.
 #![cfg(feature = "cli")]
 
+#[path = "plugin/arrivals.rs"]
+mod arrivals;
 #[path = "plugin/command.rs"]
 mod command;
 #[path = "plugin/custom_materials.rs"]

@@ -144,6 +144,20 @@ pub enum BakeWarning {
         /// The object.
         subject: Subject,
     },
+    /// Texels that Bevy shows nothing of.
+    #[error(
+        "{texels} of {all} texels are on what shows no lightmap, since it is metal, clear or black all over \
+         (materials: {materials}); make it a LightBlocker, or lower its metallic value where it should be matte: glTF \
+         makes a mesh without a material a white metal"
+    )]
+    Unseen {
+        /// How many texels.
+        texels: u64,
+        /// Of how many.
+        all: u64,
+        /// Names of the materials.
+        materials: String,
+    },
     /// Effects that a scene calls for and that a person forced off.
     #[error("forced off, so that their light is missing: {effects}")]
     ForcedOff {

@@ -12,6 +12,7 @@ use super::reuse::{FIRST_PATHS, Place};
 use super::sites::{Covered, Site, Sites};
 use super::survey::{Survey, Surveyed};
 use super::tiles::{ErrorTarget, Tile, Until, tiles};
+use super::unseen::unseen;
 use super::unwrap::{LaidOut, LaidOutMesh};
 use super::workers::{Work, Workers};
 use super::{
@@ -166,7 +167,8 @@ pub(super) fn bake<'a>(
     let pages = pages(fields, &sites, &work.results);
     let of_transport = BakeWarning::of_transport(&settings.transport, &census);
     let of_layout = laid_out.warnings.iter().chain(&atlas.warnings).cloned();
-    let warnings = faults.into_iter().map(BakeWarning::from).chain(of_layout).chain(of_uv1).chain(of_transport);
+    let of_layout = of_layout.chain(of_uv1).chain(unseen(scene, &tracer, &sites));
+    let warnings = faults.into_iter().map(BakeWarning::from).chain(of_layout).chain(of_transport);
     let is_kept = |(tile, kept): (&Tile, &Option<Kept>)| kept.as_ref().map_or(0, |_| tile.sites.len() as u64);
     let report = BakeReport {
         energy_balance: balance,

@@ -39,6 +39,7 @@ mod sites;
 mod survey;
 mod texel;
 mod tiles;
+mod unseen;
 mod unwrap;
 mod validity;
 mod volume;

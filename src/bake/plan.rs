@@ -10,6 +10,7 @@ use super::reuse::{FirstPass, Place};
 use super::sites::{Site, Sites};
 use super::survey::Surveyed;
 use super::tiles::tiles;
+use super::unseen::unseen;
 use super::unwrap::LaidOut;
 use super::workers::Workers;
 use super::{BakeError, BakeSettings, BakeWarning, CancelToken, ProgressSink, REPLICATES};
@@ -84,6 +85,7 @@ impl BakePlan {
         let mut warnings: Vec<BakeWarning> = faults.into_iter().map(BakeWarning::from).collect();
         warnings.extend(laid_out.warnings.iter().chain(&atlas.warnings).cloned());
         warnings.extend(of_uv1);
+        warnings.extend(unseen(scene, &tracer, &sites));
         warnings.extend(BakeWarning::of_transport(&settings.transport, &census));
         let pilot = Pilot::new(&sites, settings, &workers);
         let shares = pilot.cost_shares(scene, &tracer)?;

@@ -96,6 +96,9 @@ pub use display::{
 };
 
 #[cfg(feature = "bake")]
+use display::StableIds;
+
+#[cfg(feature = "bake")]
 pub use baking::{
     AmbientMode, BakeFailed, BakeFinished, BakeGoal, BakeId, BakeLightmaps, BakePlanned, BakeProgress, BakeScope,
     BakeStatus, BakeView, BakeVolumes, CancelBake, ClearLightmaps, EmissiveUnit, Extraction, ExtractionWarning,

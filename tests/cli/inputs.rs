@@ -90,3 +90,12 @@ fn numbers_that_are_none_get_a_sentence() {
         assert_fails(&output, 2, sentence);
     }
 }
+
+/// glTF takes what has no material for a white metal, of which a lightmap shows nothing.
+#[test]
+fn what_shows_no_lightmap_is_named() {
+    let spoilt = bake_spoilt(|glb| {
+        glb.primitive("floor").as_object_mut().unwrap().remove("material");
+    });
+    assert_left_out(&spoilt, "texels are on what shows no lightmap");
+}

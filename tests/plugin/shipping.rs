@@ -23,13 +23,13 @@ fn nodes() -> Value {
     ])
 }
 
-fn room() -> Value {
+pub(crate) fn room() -> Value {
     let mut room = file(&nodes());
     room["nodes"][0]["extras"] = json!({ "kiln_receive": true });
     room
 }
 
-fn write(folder: &TempDir, room: &Value) {
+pub(crate) fn write(folder: &TempDir, room: &Value) {
     std::fs::write(folder.path().join("floor.bin"), floor()).unwrap();
     std::fs::write(folder.path().join("room.gltf"), room.to_string()).unwrap();
 }
@@ -48,7 +48,7 @@ fn shown(mut game: App) -> (App, Entity) {
 }
 
 /// The same in a game that has begun, with so many lightmaps.
-fn run_until_shown(game: &mut App, lightmaps: usize) -> Entity {
+pub(crate) fn run_until_shown(game: &mut App, lightmaps: usize) -> Entity {
     let handle: Handle<Gltf> = game.world().resource::<AssetServer>().load("room.gltf");
     run_until(game, "the file", |world| world.resource::<AssetServer>().is_loaded_with_dependencies(&handle));
     let scene = game.world().resource::<Assets<Gltf>>().get(&handle).unwrap().scenes[0].clone();
@@ -99,7 +99,7 @@ fn what_is_not_as_it_was_at_the_bake_is_named() {
 }
 
 /// A sun without a name, a lantern and a stage with one, as code adds them to a scene file.
-fn add_in_code(world: &mut World) -> Entity {
+pub(crate) fn add_in_code(world: &mut World) -> Entity {
     let mesh = world.resource_mut::<Assets<Mesh>>().add(Plane3d::default().mesh().size(2.0, 2.0));
     let material = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial::default());
     let stage = (Name::new("stage"), Mesh3d(mesh), MeshMaterial3d(material), LightmapReceiver::default());
@@ -112,21 +112,29 @@ fn sun(world: &mut World, towards: Vec3) -> Entity {
     world.spawn((DirectionalLight::default(), Transform::default().looking_to(towards, Vec3::Y))).id()
 }
 
-#[test]
-fn what_a_game_adds_in_code_is_found_again() {
-    let folder = TempDir::new().unwrap();
-    write(&folder, &room());
+/// Bakes the room and what code adds to it, which holds a point light, in a game; the number of lightmaps.
+pub(crate) fn bake_in_game(folder: &TempDir, add: impl FnOnce(&mut World)) -> usize {
     let mut editor = app(folder.path());
     let handle: Handle<Gltf> = editor.world().resource::<AssetServer>().load("room.gltf");
     run_until(&mut editor, "the file", |world| world.resource::<AssetServer>().is_loaded_with_dependencies(&handle));
     let scene = editor.world().resource::<Assets<Gltf>>().get(&handle).unwrap().scenes[0].clone();
     editor.world_mut().spawn(WorldAssetRoot(scene));
-    add_in_code(editor.world_mut());
+    add(editor.world_mut());
     run_until(&mut editor, "the scene", |world| count::<PointLight>(world) == 2);
     let packed = BakeLightmaps { layout: LightmapLayout::Packed, density: 4.0, ..small() };
     editor.world_mut().trigger(packed);
     run_until_baked(&mut editor, 1).save(folder.path().join("baked")).unwrap();
-    assert_eq!(count::<Lightmap>(editor.world_mut()), 2);
+    count::<Lightmap>(editor.world_mut())
+}
+
+#[test]
+fn what_a_game_adds_in_code_is_found_again() {
+    let folder = TempDir::new().unwrap();
+    write(&folder, &room());
+    let lightmaps = bake_in_game(&folder, |world| {
+        add_in_code(world);
+    });
+    assert_eq!(lightmaps, 2);
 
     let mut game = app(folder.path());
     let world = game.world_mut();

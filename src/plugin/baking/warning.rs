@@ -4,8 +4,8 @@
 //! entity that had it when the snapshot was taken.
 
 use super::extract::Extraction;
+use crate::plugin::StableIds;
 use crate::plugin::display::KilnExtras;
-use crate::plugin::stable_id;
 use bevy::light::RectLight;
 use bevy::prelude::*;
 use std::collections::HashMap;
@@ -37,7 +37,8 @@ impl Names {
     /// Those of everything that a snapshot may name, also of what it left out.
     pub(super) fn new(world: &mut World, extraction: &Extraction) -> Self {
         let mut query = world.query_filtered::<Entity, Nameable>();
-        let named = query.iter(world).map(|entity| (stable_id(world, entity).as_str().to_owned(), entity));
+        let ids = StableIds::new(world);
+        let named = query.iter(world).map(|entity| (ids.of(entity).as_str().to_owned(), entity));
         let mut names: HashMap<String, Entity> = named.collect();
         // Of two with the same id, the one that takes part.
         names.extend(extraction.entities.iter().map(|(id, entity)| (id.as_str().to_owned(), *entity)));

@@ -24,6 +24,8 @@ pub struct BakedLightmaps(pub Handle<BakedFolder>);
 #[derive(Component, Clone, Debug, Default)]
 pub struct AppliedLightmaps {
     folder: Option<AssetId<BakedFolder>>,
+    /// Whether there was nothing left to find when it was last looked for.
+    is_at_rest: bool,
     pub(super) done: HashSet<Entity>,
     /// What shows another folder, or this one as it was before it was read again, until this one is there.
     before: HashSet<Entity>,
@@ -56,10 +58,16 @@ impl AppliedLightmaps {
         self.folder == Some(folder)
     }
 
+    /// Has what is not found yet looked for again.
+    pub(super) fn look_again(&mut self) {
+        self.is_at_rest = false;
+    }
+
     /// Has everything put on anew, in place of what is there until then.
     pub(super) fn put_on_again(&mut self) {
         self.before.extend(self.done.drain());
         self.folder = None;
+        self.is_at_rest = false;
         self.compared.clear();
         self.changed.clear();
     }
@@ -68,8 +76,11 @@ impl AppliedLightmaps {
 /// Applies loaded folders to what has come since the last frame, below their roots and outside of files.
 pub(crate) fn apply_baked_lightmaps(world: &mut World) {
     let mut roots = world.query::<(Entity, &BakedLightmaps, &AppliedLightmaps)>();
-    let roots: Vec<(Entity, Handle<BakedFolder>, AppliedLightmaps)> =
-        roots.iter(world).map(|(entity, baked, applied)| (entity, baked.0.clone(), applied.clone())).collect();
+    let roots: Vec<(Entity, Handle<BakedFolder>, AppliedLightmaps)> = roots
+        .iter(world)
+        .filter(|(_, baked, applied)| !(applied.is_at_rest && applied.is_of(baked.0.id())))
+        .map(|(entity, baked, applied)| (entity, baked.0.clone(), applied.clone()))
+        .collect();
     for (root, folder, mut applied) in roots {
         if applied.folder.is_some_and(|before| before != folder.id()) {
             applied.put_on_again();
@@ -80,6 +91,9 @@ pub(crate) fn apply_baked_lightmaps(world: &mut World) {
         }
         let Found { jobs, compared, changed } = find(world, root, &folder, &applied);
         if jobs.is_empty() && compared.is_empty() && !is_new {
+            if let Some(mut applied) = world.get_mut::<AppliedLightmaps>(root) {
+                applied.is_at_rest = true;
+            }
             continue;
         }
         if is_new {

@@ -4,8 +4,8 @@
 use super::attach::Shown;
 use super::filtering::FilteredBy;
 use super::fingerprint::fingerprint;
-use super::stable_path::is_named;
-use super::{AppliedLightmaps, BakedFolder, BakedLightmaps, LightBaking, stable_id};
+use super::stable_path::{StableIds, is_named};
+use super::{AppliedLightmaps, BakedFolder, BakedLightmaps, LightBaking};
 use crate::artefact::{Change, Manifest, StableId};
 use bevy::light::RectLight;
 use bevy::pbr::Lightmap;
@@ -68,13 +68,14 @@ fn look_at(
         })
         .collect();
     let lights: HashSet<&StableId> = folder.manifest.baked_lights.iter().map(|light| &light.id).collect();
+    let ids = StableIds::new(world);
     for (entity, is_outside) in entities {
         let (mesh, is_light) = (world.get::<Mesh3d>(entity), is_light(world, entity));
         let is_known = applied.done.contains(&entity) && applied.compared.contains(&entity);
         if is_known || (mesh.is_none() && !is_light) {
             continue;
         }
-        let id = stable_id(world, entity);
+        let id = ids.of(entity);
         if is_outside && !is_meant(world, &folder.manifest, entity, &id) {
             continue;
         }

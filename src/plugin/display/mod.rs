@@ -1,6 +1,7 @@
 //! All that a shipped game needs: names, loading a baked folder, putting it on entities. Knows no tracer.
 
 mod apply;
+mod arrivals;
 mod attach;
 mod attribute;
 mod extras;
@@ -43,6 +44,8 @@ pub(crate) use material::{FoundMaterial, find_described};
 #[cfg(feature = "bake")]
 pub(crate) use mute::{MutedLight, mute_light, unmute_light};
 #[cfg(feature = "bake")]
+pub(super) use stable_path::StableIds;
+#[cfg(feature = "bake")]
 pub(crate) use volume::{ShownVolume, despawn_volumes, spawn_volume};
 #[cfg(feature = "bake")]
 pub(crate) use wear::{SharedLayout, own_mesh};
@@ -74,6 +77,7 @@ pub(super) fn plugin(app: &mut App) {
                 wear::forget_copies_of_changed,
                 filtering::follow_filtering.run_if(resource_exists_and_changed::<LightmapFiltering>),
                 reload::heed_reloads,
+                arrivals::heed_arrivals,
                 apply::apply_baked_lightmaps,
             )
                 .chain()

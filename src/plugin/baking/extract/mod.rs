@@ -27,8 +27,8 @@ use super::markers::LightmapReceiver;
 use super::settings::SceneSettings;
 use crate::artefact::StableId;
 use crate::bake::{BakeSettings, VolumeBox, VolumeBoxes, VolumeSettings};
+use crate::plugin::StableIds;
 use crate::plugin::display::{ExtrasFault, KilnExtras, fingerprint};
-use crate::plugin::stable_id;
 use crate::scene::{LightmapRequest, Scene, unique_ids};
 use bevy::asset::{AssetPath, UntypedAssetId};
 use bevy::camera::visibility::{RenderLayers, VisibilityRange};
@@ -135,8 +135,7 @@ impl Kind {
 }
 
 impl Thing {
-    fn new(world: &World, entity: Entity, kind: Kind) -> Self {
-        let id = stable_id(world, entity);
+    fn new(id: StableId, entity: Entity, kind: Kind) -> Self {
         Self { name: id.as_str().to_owned(), id, entity, kind }
     }
 }
@@ -164,8 +163,9 @@ fn name_all(world: &World, mut things: Vec<Thing>, out: &mut Extraction) -> Vec<
 /// What was written on things in the modelling program and cannot be read.
 fn find_faulty_extras(world: &mut World, warnings: &mut Vec<ExtractionWarning>) {
     let mut written = world.query::<(Entity, &KilnExtras)>();
+    let ids = StableIds::new(world);
     for (entity, extras) in written.iter(world).filter(|(_, extras)| !extras.faults.is_empty()) {
-        let name = stable_id(world, entity).as_str().to_owned();
+        let name = ids.of(entity).as_str().to_owned();
         let faulty = |fault: &ExtrasFault| ExtractionWarning::Extras { name: name.clone(), fault: fault.to_string() };
         warnings.extend(extras.faults.iter().map(faulty));
     }
@@ -177,6 +177,7 @@ fn find_meshes(world: &mut World, settings: &SceneSettings, out: &mut Extraction
     let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
     let meshes: Vec<Entity> = meshes.iter(world).collect();
     let (world, warnings) = (&*world, &mut out.warnings);
+    let ids = StableIds::new(world);
     let mut things = Vec::new();
     for entity in meshes {
         let mark = role::of(world, entity);
@@ -195,7 +196,8 @@ fn find_meshes(world: &mut World, settings: &SceneSettings, out: &mut Extraction
             out.hidden.push(entity);
             continue;
         }
-        let name = stable_id(world, entity).as_str().to_owned();
+        let id = ids.of(entity);
+        let name = id.as_str().to_owned();
         if !is_on_layers(world, entity, settings) {
             warnings.push(ExtractionWarning::OtherLayers { name });
             continue;
@@ -217,7 +219,7 @@ fn find_meshes(world: &mut World, settings: &SceneSettings, out: &mut Extraction
                 warnings.push(ExtractionWarning::Posed { name, how });
             }
         }
-        things.push(Thing::new(world, entity, Kind::Mesh(*request)));
+        things.push(Thing::new(id, entity, Kind::Mesh(*request)));
     }
     things
 }

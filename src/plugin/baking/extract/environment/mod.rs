@@ -5,8 +5,8 @@ mod cube;
 
 use super::texture::{self, Unreadable};
 use super::{Extraction, ExtractionWarning};
+use crate::plugin::StableIds;
 use crate::plugin::baking::{AmbientMode, SceneSettings};
-use crate::plugin::stable_id;
 use crate::scene::{EnvironmentMap, Texels};
 use bevy::light::{AtmosphereEnvironmentMapLight, EnvironmentMapLight, GeneratedEnvironmentMapLight, LightProbe};
 use bevy::prelude::*;
@@ -108,7 +108,8 @@ fn find(world: &mut World) -> Vec<(String, Source)> {
         };
         found.push((entity, source));
     }
-    let named = found.into_iter().map(|(entity, source)| (stable_id(world, entity).as_str().to_owned(), source));
+    let ids = StableIds::new(world);
+    let named = found.into_iter().map(|(entity, source)| (ids.of(entity).as_str().to_owned(), source));
     let mut named: Vec<(String, Source)> = named.collect();
     named.sort_by(|(a, _), (b, _)| a.cmp(b));
     named

@@ -7,7 +7,7 @@ mod rect;
 use super::{Extraction, ExtractionWarning, Kind, Thing, is_on_layers, is_visible};
 use crate::plugin::baking::{RangeWindow, SceneSettings};
 use crate::plugin::display::MutedLight;
-use crate::plugin::{LightBaking, stable_id};
+use crate::plugin::{LightBaking, StableIds};
 use bevy::light::{DirectionalLightTexture, PointLight, PointLightTexture, RectLight, SpotLight, SpotLightTexture};
 use bevy::math::Affine3A;
 use bevy::prelude::*;
@@ -44,10 +44,11 @@ pub(super) fn find(world: &mut World, settings: &SceneSettings, out: &mut Extrac
     let (visible, hidden): (Vec<_>, Vec<_>) = asked.partition(|&(entity, _)| is_visible(world, entity));
     let is_taken = |&(entity, _): &(Entity, LightKind)| is_on_layers(world, entity, settings);
     let (taken, left): (Vec<_>, Vec<_>) = visible.into_iter().partition(is_taken);
-    let name = |(entity, _)| stable_id(world, entity).as_str().to_owned();
+    let ids = StableIds::new(world);
+    let name = |(entity, _)| ids.of(entity).as_str().to_owned();
     out.warnings.extend(left.into_iter().map(|light| ExtractionWarning::OtherLayers { name: name(light) }));
     out.hidden.extend(hidden.into_iter().map(|(entity, _)| entity));
-    taken.into_iter().map(|(entity, kind)| Thing::new(world, entity, Kind::Light(kind))).collect()
+    taken.into_iter().map(|(entity, kind)| Thing::new(ids.of(entity), entity, Kind::Light(kind))).collect()
 }
 
 /// Adds one light.
