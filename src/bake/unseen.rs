@@ -9,8 +9,9 @@ use crate::trace::Tracer;
 use glam::Vec3;
 use std::collections::BTreeSet;
 
-/// Least share of all texels that is worth a warning: a handle of brass is not.
-const SHARE: f64 = 0.05;
+/// Least share of all texels that is worth a warning. A scene may well have metal and glass; one that is nothing else
+/// has been exported without its materials, or without the number that says that they are no metal.
+const SHARE: f64 = 0.5;
 
 /// Materials that a warning names.
 const NAMED: usize = 3;
