@@ -146,7 +146,7 @@ pub enum BakeWarning {
     },
     /// Texels that Bevy shows nothing of.
     #[error(
-        "{texels} of {all} texels are on what shows no lightmap, since it is metal, clear or black all over \
+        "{texels} of {all} texels are on what shows no lightmap, since it is metal or clear glass all over \
          (materials: {materials}); make it a LightBlocker, or lower its metallic value where it should be matte: glTF \
          makes a mesh without a material a white metal"
     )]

@@ -1,16 +1,16 @@
-//! Texels that are baked and never seen: Bevy multiplies a lightmap by the diffuse colour, of which metal, clear glass
-//! and what is black have none (`calculate_diffuse_color` in its `pbr_functions.wgsl`). Owns the warning and from where
-//! on it is worth one. They are baked all the same, since a game may change its materials.
+//! Texels that are baked and never seen: Bevy multiplies a lightmap by the diffuse colour, of which metal and clear
+//! glass have none (`calculate_diffuse_color` in its `pbr_functions.wgsl`). Owns the warning and from where on it is
+//! worth one. They are baked all the same, since a game may change its materials.
 
 use super::BakeWarning;
 use super::sites::Site;
 use crate::scene::{Material, Scattering, Scene};
 use crate::trace::Tracer;
-use glam::Vec3;
 use std::collections::BTreeSet;
 
-/// Least share of all texels that is worth a warning. A scene may well have metal and glass; one that is nothing else
-/// has been exported without its materials, or without the number that says that they are no metal.
+/// The warning is worth it where more than this share of all texels is concerned. A scene may well have metal and
+/// glass; one that is little else was exported without its materials, or without the number that says that they are no
+/// metal.
 const SHARE: f64 = 0.5;
 
 /// Materials that a warning names.
@@ -30,25 +30,20 @@ pub(super) fn unseen(scene: &Scene, tracer: &Tracer, sites: &[Site]) -> Option<B
         |site: &Site| site.covered.texel.areas.first().and_then(|&(triangle, _)| hidden_by[triangle as usize]);
     let materials: Vec<usize> = sites.iter().filter_map(of_site).collect();
     let (texels, all) = (materials.len() as u64, sites.len() as u64);
-    (texels > 0 && texels as f64 >= SHARE * all as f64).then(|| {
+    (texels as f64 > SHARE * all as f64).then(|| {
         let names: BTreeSet<&str> = materials.iter().map(|&material| scene.materials[material].name.as_str()).collect();
         BakeWarning::Unseen { texels, all, materials: few(&names) }
     })
 }
 
-/// Whether light that a lightmap holds can be seen somewhere on a surface. What a texture says is not looked into.
+/// Whether Bevy may show diffuse light somewhere on a surface. What a texture says is not looked into, and what is not
+/// Bevy's is not judged.
 fn shows_diffuse_light(material: &Material) -> bool {
-    let is_diffuse = match &material.scattering {
-        Scattering::None | Scattering::Mirror | Scattering::Refraction { .. } => false,
-        Scattering::Diffuse | Scattering::Phong { .. } => true,
-        Scattering::Standard(standard) => {
-            let is_whole = |share: f32, has_texture: bool| share >= 1.0 && !has_texture;
-            !is_whole(standard.metallic, standard.metallic_roughness_texture.is_some())
-                && !is_whole(standard.specular_transmission, standard.specular_transmission_texture.is_some())
-                && !is_whole(standard.diffuse_transmission, standard.diffuse_transmission_texture.is_some())
-        }
-    };
-    is_diffuse && material.base_colour.truncate() != Vec3::ZERO
+    let Scattering::Standard(standard) = &material.scattering else { return true };
+    let is_whole = |share: f32, has_texture: bool| share >= 1.0 && !has_texture;
+    !is_whole(standard.metallic, standard.metallic_roughness_texture.is_some())
+        && !is_whole(standard.specular_transmission, standard.specular_transmission_texture.is_some())
+        && !is_whole(standard.diffuse_transmission, standard.diffuse_transmission_texture.is_some())
 }
 
 /// A few names in quotes, and how many there are beside them.
@@ -64,6 +59,7 @@ fn few(names: &BTreeSet<&str>) -> String {
 mod tests {
     use super::*;
     use crate::scene::{Standard, TextureRef, UvChannel};
+    use glam::Vec3;
 
     fn standard(standard: Standard) -> Material {
         let scattering = Scattering::Standard(Box::new(standard));
@@ -79,10 +75,6 @@ mod tests {
         let leaf = Standard { diffuse_transmission: 0.9, ..Standard::default() };
         assert!([metal, glass].into_iter().all(|of| !shows_diffuse_light(&standard(of))));
         assert!([rusty, leaf, Standard::default()].into_iter().all(|of| shows_diffuse_light(&standard(of))));
-        assert!(
-            !shows_diffuse_light(&Material::default()) && !shows_diffuse_light(&Material::emissive("a", Vec3::ONE))
-        );
-        assert!(shows_diffuse_light(&Material::diffuse("a", Vec3::X)));
     }
 
     #[test]
