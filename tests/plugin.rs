@@ -16,6 +16,8 @@ mod filtering;
 #[allow(dead_code, reason = "the command line's tests use the rest of it")]
 #[path = "support/glb.rs"]
 mod glb;
+#[path = "plugin/late_textures.rs"]
+mod late_textures;
 #[path = "plugin/left_out.rs"]
 mod left_out;
 #[path = "plugin/light_baking.rs"]

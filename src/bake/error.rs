@@ -146,7 +146,7 @@ pub enum BakeWarning {
     },
     /// Texels that Bevy shows nothing of.
     #[error(
-        "{texels} of {all} texels are on what shows no lightmap, since it is metal or clear glass all over \
+        "{texels} of {all} texels are on what shows no lightmap, since all of it is metal or lets light through \
          (materials: {materials}); make it a LightBlocker, or lower its metallic value where it should be matte: glTF \
          makes a mesh without a material a white metal"
     )]

@@ -12,7 +12,6 @@ use super::reuse::{FIRST_PATHS, Place};
 use super::sites::{Covered, Site, Sites};
 use super::survey::{Survey, Surveyed};
 use super::tiles::{ErrorTarget, Tile, Until, tiles};
-use super::unseen::unseen;
 use super::unwrap::{LaidOut, LaidOutMesh};
 use super::workers::{Work, Workers};
 use super::{
@@ -131,7 +130,7 @@ pub(super) fn bake<'a>(
     let faults = laid_out.without_solved(faults);
     refuse_what_cannot_be_baked(&tracer, &faults)?;
     let atlas = Atlas::new(&laid_out, &tracer, settings, cancel)?;
-    let Sites { seen: sites, hidden, warnings: of_uv1 } = Sites::new(scene, &tracer, &atlas, settings, &workers)?;
+    let Sites { seen: sites, hidden, warnings: of_texels } = Sites::new(scene, &tracer, &atlas, settings, &workers)?;
     refuse_endless_texels(scene, &tracer, &settings.transport, &sites)?;
     let first_pass =
         Place { tracer: &tracer, atlas: &atlas, sites: &sites }.first_pass(FIRST_PATHS, settings, &workers)?;
@@ -167,8 +166,7 @@ pub(super) fn bake<'a>(
     let pages = pages(fields, &sites, &work.results);
     let of_transport = BakeWarning::of_transport(&settings.transport, &census);
     let of_layout = laid_out.warnings.iter().chain(&atlas.warnings).cloned();
-    let of_layout = of_layout.chain(of_uv1).chain(unseen(scene, &tracer, &sites));
-    let warnings = faults.into_iter().map(BakeWarning::from).chain(of_layout).chain(of_transport);
+    let warnings = faults.into_iter().map(BakeWarning::from).chain(of_layout).chain(of_texels).chain(of_transport);
     let is_kept = |(tile, kept): (&Tile, &Option<Kept>)| kept.as_ref().map_or(0, |_| tile.sites.len() as u64);
     let report = BakeReport {
         energy_balance: balance,

@@ -86,11 +86,11 @@ impl<'a> Receivers<'a> {
         let faults = laid_out.without_solved(faults);
         refuse_what_cannot_be_baked(&tracer, &faults)?;
         let atlas = Atlas::new(&laid_out, &tracer, settings, cancel)?;
-        let Sites { seen, warnings: of_uv1, .. } = Sites::new(&laid_out.scene, &tracer, &atlas, settings, &workers)?;
+        let Sites { seen, warnings: of_texels, .. } = Sites::new(&laid_out.scene, &tracer, &atlas, settings, &workers)?;
         refuse_endless_texels(&laid_out.scene, &tracer, &settings.transport, &seen)?;
         let mut warnings: Vec<BakeWarning> = faults.into_iter().map(BakeWarning::from).collect();
         warnings.extend(laid_out.warnings.iter().chain(&atlas.warnings).cloned());
-        warnings.extend(of_uv1);
+        warnings.extend(of_texels);
         warnings.extend(BakeWarning::of_transport(&settings.transport, &census));
         let first_pass = Place { tracer: &tracer, atlas: &atlas, sites: &seen };
         let first_pass = first_pass.first_pass(FIRST_PATHS, settings, &workers)?;

@@ -5,6 +5,7 @@ use super::charts::Charts;
 use super::gather::{Estimate, KeyKind, Runs, Start, key};
 use super::raster::{Fragment, MIN_COVERAGE, covered_texels};
 use super::texel::Texel;
+use super::unseen::unseen;
 use super::validity::{Footing, footings};
 use super::workers::Workers;
 use super::{BakeError, BakeSettings, BakeWarning, CancelToken, Layout};
@@ -113,7 +114,7 @@ pub(super) struct Sites {
     pub(super) seen: Vec<Site>,
     /// Covered texels that lie inside of bodies, in the dark.
     pub(super) hidden: Vec<Covered>,
-    /// Objects that overlap or cover nothing.
+    /// Objects that overlap, cover nothing, or show nothing.
     pub(super) warnings: Vec<BakeWarning>,
 }
 
@@ -126,12 +127,13 @@ impl Sites {
         workers: &Workers<'_>,
     ) -> Result<Self, BakeError> {
         let charts = Charts::new(tracer, &atlas.charts);
-        let (covered, warnings) = covered(scene, tracer, atlas, &charts, settings);
+        let (covered, mut warnings) = covered(scene, tracer, atlas, &charts, settings);
         let footings = footings(tracer, atlas, &covered, settings, workers)?;
         let (mut seen, mut hidden) = (Vec::new(), Vec::new());
         for (covered, footing) in covered.into_iter().zip(footings) {
             if footing.is_hidden { hidden.push(covered) } else { seen.push(Site { covered, footing }) }
         }
+        warnings.extend(unseen(scene, tracer, &seen));
         Ok(Self { seen, hidden, warnings })
     }
 }

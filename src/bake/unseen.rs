@@ -1,5 +1,5 @@
-//! Texels that are baked and never seen: Bevy multiplies a lightmap by the diffuse colour, of which metal and clear
-//! glass have none (`calculate_diffuse_color` in its `pbr_functions.wgsl`). Owns the warning and from where on it is
+//! Texels that are baked and never seen: Bevy multiplies a lightmap by the diffuse colour, of which metal and what
+//! lets all light through have none (`calculate_diffuse_color` in its `pbr_functions.wgsl`). Owns the warning and from where on it is
 //! worth one. They are baked all the same, since a game may change its materials.
 
 use super::BakeWarning;

@@ -47,7 +47,10 @@ fn coloured() -> TempDir {
     room["bufferViews"].as_array_mut().unwrap().push(view);
     room["images"] = json!([{ "uri": "picture.png" }, { "bufferView": 2, "mimeType": "image/png" }]);
     room["textures"] = json!([{ "source": 0 }, { "source": 1 }]);
-    let material = |texture: usize| json!({ "pbrMetallicRoughness": { "metallicFactor": 0, "baseColorTexture": { "index": texture } } });
+    let material = |texture: usize| {
+        let matte = json!({ "metallicFactor": 0, "baseColorTexture": { "index": texture } });
+        json!({ "pbrMetallicRoughness": matte })
+    };
     room["materials"] = json!([material(0), material(1)]);
     room["meshes"][1]["primitives"][0]["material"] = 1.into();
     room["nodes"][0]["extras"] = json!({ "kiln_receive": true });

@@ -3,14 +3,8 @@
 
 use super::extras::{file, floor};
 use super::*;
-use bevy::asset::io::{
-    AssetReader, AssetReaderError, AssetSourceBuilder, AssetSourceId, PathStream, Reader, VecReader,
-};
 use bevy::light::PointLight;
 use serde_json::{Value, json};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::task::Poll;
 use temp_dir::TempDir;
 
 fn nodes() -> Value {
@@ -34,11 +28,18 @@ pub(crate) fn write(folder: &TempDir, room: &Value) {
     std::fs::write(folder.path().join("room.gltf"), room.to_string()).unwrap();
 }
 
-fn bake(folder: &TempDir, options: &[&str]) {
+pub(crate) fn bake(folder: &TempDir, options: &[&str]) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_kiln"));
     command.arg("bake").arg(folder.path().join("room.gltf")).arg("-o").arg(folder.path().join("baked"));
     let output = command.args(["--spp", "4", "--format", "rgba16f"]).args(options).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// The room's file once it is read, ready to be spawned.
+pub(crate) fn loaded(game: &mut App) -> WorldAssetRoot {
+    let handle: Handle<Gltf> = game.world().resource::<AssetServer>().load("room.gltf");
+    run_until(game, "the file", |world| world.resource::<AssetServer>().is_loaded_with_dependencies(&handle));
+    WorldAssetRoot(game.world().resource::<Assets<Gltf>>().get(&handle).unwrap().scenes[0].clone())
 }
 
 /// The scene with its folder, as a game shows it; the root is put elsewhere, as a game may.
@@ -49,12 +50,10 @@ fn shown(mut game: App) -> (App, Entity) {
 
 /// The same in a game that has begun, with so many lightmaps.
 pub(crate) fn run_until_shown(game: &mut App, lightmaps: usize) -> Entity {
-    let handle: Handle<Gltf> = game.world().resource::<AssetServer>().load("room.gltf");
-    run_until(game, "the file", |world| world.resource::<AssetServer>().is_loaded_with_dependencies(&handle));
-    let scene = game.world().resource::<Assets<Gltf>>().get(&handle).unwrap().scenes[0].clone();
+    let scene = loaded(game);
     let baked: Handle<BakedFolder> = game.world().resource::<AssetServer>().load("baked/kiln.ron");
     let place = Transform::from_xyz(30.0, -4.0, 0.1).with_rotation(Quat::from_rotation_y(1.0));
-    let root = game.world_mut().spawn((WorldAssetRoot(scene), BakedLightmaps(baked), place)).id();
+    let root = game.world_mut().spawn((scene, BakedLightmaps(baked), place)).id();
     run_until(game, "the lightmaps", |world| count::<Lightmap>(world) == lightmaps);
     root
 }
@@ -115,10 +114,8 @@ fn sun(world: &mut World, towards: Vec3) -> Entity {
 /// Bakes the room and what code adds to it, which holds a point light, in a game; the number of lightmaps.
 pub(crate) fn bake_in_game(folder: &TempDir, add: impl FnOnce(&mut World)) -> usize {
     let mut editor = app(folder.path());
-    let handle: Handle<Gltf> = editor.world().resource::<AssetServer>().load("room.gltf");
-    run_until(&mut editor, "the file", |world| world.resource::<AssetServer>().is_loaded_with_dependencies(&handle));
-    let scene = editor.world().resource::<Assets<Gltf>>().get(&handle).unwrap().scenes[0].clone();
-    editor.world_mut().spawn(WorldAssetRoot(scene));
+    let scene = loaded(&mut editor);
+    editor.world_mut().spawn(scene);
     add(editor.world_mut());
     run_until(&mut editor, "the scene", |world| count::<PointLight>(world) == 2);
     let packed = BakeLightmaps { layout: LightmapLayout::Packed, density: 4.0, ..small() };
@@ -195,71 +192,6 @@ fn a_folder_that_is_baked_again_is_shown_anew() {
     game.update();
     assert_eq!(count::<Lightmap>(game.world_mut()), 0);
     assert!(power(game.world_mut()) > 0.0, "the lamp is given back as it was, not as it was muted");
-}
-
-/// Files of which the textures are kept back for a while.
-#[derive(Clone)]
-struct LateTextures {
-    folder: PathBuf,
-    are_kept_back: Arc<AtomicBool>,
-}
-
-impl AssetReader for LateTextures {
-    async fn read<'a>(&'a self, path: &'a Path) -> Result<impl Reader + 'a, AssetReaderError> {
-        let is_texture = path.extension().is_some_and(|extension| extension == "ktx2");
-        std::future::poll_fn(|context| {
-            if !is_texture || !self.are_kept_back.load(Ordering::Relaxed) {
-                return Poll::Ready(());
-            }
-            context.waker().wake_by_ref();
-            Poll::Pending
-        })
-        .await;
-        let bytes = std::fs::read(self.folder.join(path)).map_err(AssetReaderError::from)?;
-        Ok(VecReader::new(bytes))
-    }
-
-    async fn read_meta<'a>(&'a self, path: &'a Path) -> Result<impl Reader + 'a, AssetReaderError> {
-        Err::<VecReader, _>(AssetReaderError::NotFound(path.to_owned()))
-    }
-
-    async fn read_directory<'a>(&'a self, path: &'a Path) -> Result<Box<PathStream>, AssetReaderError> {
-        Err::<Box<PathStream>, _>(AssetReaderError::NotFound(path.to_owned()))
-    }
-
-    async fn is_directory<'a>(&'a self, path: &'a Path) -> Result<bool, AssetReaderError> {
-        Ok(self.folder.join(path).is_dir())
-    }
-}
-
-#[test]
-fn lights_shine_until_the_textures_are_there() {
-    let folder = TempDir::new().unwrap();
-    write(&folder, &room());
-    bake(&folder, &["--density", "4"]);
-    let files = LateTextures { folder: folder.path().to_owned(), are_kept_back: Arc::new(AtomicBool::new(true)) };
-    let are_kept_back = files.are_kept_back.clone();
-    let mut game = App::new();
-    game.register_asset_source(AssetSourceId::Default, AssetSourceBuilder::new(move || Box::new(files.clone())));
-    game.add_plugins(WindowlessPlugins { asset_folder: folder.path().to_owned() }).add_plugins(KilnPlugin);
-    game.finish();
-    game.cleanup();
-    let handle: Handle<Gltf> = game.world().resource::<AssetServer>().load("room.gltf");
-    run_until(&mut game, "the file", |world| world.resource::<AssetServer>().is_loaded_with_dependencies(&handle));
-    let scene = game.world().resource::<Assets<Gltf>>().get(&handle).unwrap().scenes[0].clone();
-    let baked: Handle<BakedFolder> = game.world().resource::<AssetServer>().load("baked/kiln.ron");
-    game.world_mut().spawn((WorldAssetRoot(scene), BakedLightmaps(baked.clone())));
-    run_until(&mut game, "the scene", |world| count::<PointLight>(world) == 1);
-    run_until(&mut game, "the manifest", |world| world.resource::<AssetServer>().is_loaded(&baked));
-    for _ in 0..5 {
-        game.update();
-    }
-    let power = |world: &mut World| world.query::<&PointLight>().single(world).unwrap().intensity;
-    assert!(power(game.world_mut()) > 0.0, "the room would be dark");
-    assert_eq!(count::<Lightmap>(game.world_mut()), 0);
-    are_kept_back.store(false, Ordering::Relaxed);
-    run_until(&mut game, "the lightmap", |world| count::<Lightmap>(world) == 1);
-    assert_eq!((power(game.world_mut()), texels(game.world_mut()).len()), (0.0, 1));
 }
 
 #[test]

@@ -12,7 +12,7 @@ use std::collections::HashSet;
 
 /// Lights what is below this entity with a baked folder. Put it beside the scene's root component; it finds the
 /// objects by their [`StableId`] as they spawn, and mutes the lights that the textures hold. What the game itself adds
-/// outside of scene files, such as a sun, is found by its `Name`; without one, where it stands and is as it was baked.
+/// outside of scene files, such as a sun, is found by its `Name`; without one, if it is like what was baked, and there, when it comes.
 /// Nothing changes before all textures have come, so that no light goes off too early. A folder that is read anew while
 /// the game runs is shown anew; another one takes the place of the one before once it is there.
 #[derive(Component, Clone, Debug, Default, Reflect)]

@@ -16,12 +16,14 @@ pub(super) fn heed_arrivals(
     arrived: Query<(), Arrived>,
     mut meshes: MessageReader<AssetEvent<Mesh>>,
     mut materials: MessageReader<AssetEvent<StandardMaterial>>,
+    mut freed: RemovedComponents<LightBaking>,
     mut roots: Query<&mut AppliedLightmaps>,
 ) {
-    // All of both are read, or what was not would be news in the next frame.
-    let has_loaded = meshes.read().filter(|event| is_new(event)).count() > 0;
-    let has_loaded = materials.read().filter(|event| is_new(event)).count() > 0 || has_loaded;
-    if has_loaded || !arrived.is_empty() {
+    // Counted, so that all are read: what was not would be news in the next frame.
+    let meshes = meshes.read().filter(|event| is_new(event)).count();
+    let materials = materials.read().filter(|event| is_new(event)).count();
+    let freed = freed.read().count();
+    if meshes + materials + freed > 0 || !arrived.is_empty() {
         for mut applied in &mut roots {
             applied.look_again();
         }

@@ -1,7 +1,7 @@
 //! What takes no part because it is hidden, named by what hides it: a level may have a whole wing switched off.
 
 use super::{Extraction, ExtractionWarning};
-use crate::plugin::stable_id;
+use crate::plugin::StableIds;
 use bevy::prelude::*;
 use std::collections::BTreeMap;
 
@@ -11,8 +11,9 @@ pub(super) fn name(world: &World, out: &mut Extraction) {
     for entity in out.hidden.drain(..) {
         *hiders.entry(hider(world, entity)).or_default() += 1;
     }
+    let ids = StableIds::new(world);
     let named = |(entity, count)| {
-        let name = stable_id(world, entity).as_str().to_owned();
+        let name = ids.of(entity).as_str().to_owned();
         ExtractionWarning::Hidden { name, count }
     };
     out.warnings.extend(hiders.into_iter().map(named));
